@@ -1,0 +1,451 @@
+"""The kinds of value that a scenario file may hold, and the section that holds them, on top of pydantic.
+
+A kind reads one value (`Quantity` a length, `Whole` a count), says in a sentence what is wrong with it, and describes
+itself for the JSON schema. Kinds stand in the `Annotated` of a field. Nothing is coerced: 3.7 is no count, `"3"` is
+no number, `true` is neither. `Section` is the base of every part of the file: it refuses unknown keys with the
+nearest known one, and reports everything that is wrong with it at once.
+"""
+
+from __future__ import annotations
+
+import math
+import numbers
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar, NoReturn
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    ModelWrapValidatorHandler,
+    ValidationError,
+    model_validator,
+)
+from pydantic_core import InitErrorDetails, PydanticCustomError, core_schema
+
+from gw_exudyn.errors import UnitError
+from gw_exudyn.scenario.units import format_quantity, parse_quantity, parse_unit, units_that_fit
+from gw_exudyn.scenario.words import did_you_mean, nearest, plural, shown
+
+Loc = tuple[str | int, ...]
+
+KIND_TAG = "kind="
+"""Pydantic puts the tag of a union into the place of an error; ours begin with this, to be taken out again."""
+
+
+def wrong(
+    message: str,
+    *,
+    missing: bool = False,
+    instead: tuple[str, ...] = (),
+    file: str | None = None,
+    line: int | None = None,
+) -> PydanticCustomError:
+    """The error to raise for one value.
+
+    missing : the value is not there. instead : other keys that would do; if one of them is there but misspelt, that is
+    the one mistake, and this error is dropped. file, line : only if they are not those of the value (of a CSV file).
+    """
+    context = {"text": message, "instead": instead, "file": file, "line": line}
+    return PydanticCustomError("scenario_missing" if missing else "scenario", "{text}", context)
+
+
+class Faults:
+    """Collects what is wrong with the parts of a value, to raise all of it at once."""
+
+    def __init__(self) -> None:
+        self._details: list[InitErrorDetails] = []
+
+    def add(self, loc: Loc, error: PydanticCustomError | str, value: object = None) -> None:
+        """Note a fault at the place `loc`, relative to the value."""
+        kind = wrong(error) if isinstance(error, str) else error
+        self._details.append(InitErrorDetails(type=kind, loc=loc, input=value))
+
+    def read(self, loc: Loc, reader: Callable[[Any], Any], value: object) -> Any:
+        """`reader(value)`, or None and a note of what is wrong."""
+        try:
+            return reader(value)
+        except PydanticCustomError as error:
+            self.add(loc, error, value)
+        except ValidationError as error:
+            for details in error.errors(include_url=False):
+                context = details.get("ctx", {})
+                inner = wrong(context.get("text", details["msg"]), file=context.get("file"), line=context.get("line"))
+                self.add((*loc, *details["loc"]), inner, details["input"])
+        return None
+
+    def raise_if_any(self) -> None:
+        """Raise everything noted, if anything was."""
+        if self._details:
+            raise ValidationError.from_exception_data("scenario", self._details)
+
+
+class Kind:
+    """Base of the kinds of value."""
+
+    def read(self, value: Any) -> Any:
+        """The value in SI, checked. Raises what `wrong` makes, or a ValidationError with several."""
+        raise NotImplementedError
+
+    def json(self) -> dict[str, Any]:
+        """JSON schema of the value as a file may hold it."""
+        raise NotImplementedError
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        """Pydantic's hook: validate by `read` alone."""
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Pydantic's hook: describe by `json`."""
+        return self.json()
+
+
+@dataclass(frozen=True)
+class Quantity(Kind):
+    """A physical quantity: a bare SI number or text with a unit.
+
+    unit : its SI unit. low, high : the plausible, in SI, both allowed. usual : the unit in which limits are told.
+    also : other SI units whose dimension is taken. auto : the word `auto` stands for None. optional : so does nothing
+        at all.
+    """
+
+    unit: str
+    low: float
+    high: float
+    usual: str
+    also: tuple[str, ...] = ()
+    auto: bool = False
+    optional: bool = False
+
+    def read(self, value: Any) -> float | None:
+        """The value in SI."""
+        if (value is None and (self.optional or self.auto)) or (
+            self.auto and isinstance(value, str) and value == "auto"
+        ):
+            return None
+        if isinstance(value, str):
+            number = self._from_text(value)
+        elif is_number(value):
+            number = as_float(value)
+        else:
+            raise wrong(f"{shown(value)} is no quantity; write {self._example()}")
+        if not self.low <= number <= self.high:
+            raise wrong(self._implausible(value, number))
+        return number
+
+    def _from_text(self, text: str) -> float:
+        try:
+            return parse_quantity(text, self.unit, *self.also)
+        except UnitError as error:
+            auto = "; or write auto" if self.auto else ""
+            raise wrong(f"{error}{auto}") from None
+
+    def _example(self) -> str:
+        return ("auto, or " if self.auto else "") + f"a number in SI ({self.unit}) or text such as '2.5 {self.usual}'"
+
+    def _implausible(self, value: Any, number: float) -> str:
+        limits = f"{self.limit(self.low)} to {self.limit(self.high)}"
+        if isinstance(value, str):
+            return f"{shown(value, quote=False)} is outside the plausible {limits}"
+        text = f"{shown(value)} {self.unit} is outside the plausible {limits}"
+        factor = float(parse_unit(self.usual).factor)
+        if factor != 1 and self.low <= number * factor <= self.high:
+            text += f"; a bare number is in SI ({self.unit}): write '{shown(value)} {self.usual}'"
+        return text
+
+    def limit(self, value: float) -> str:
+        """A limit as a message tells it, in the usual unit."""
+        return format_quantity(value, self.usual)
+
+    def json(self) -> dict[str, Any]:
+        """A number in SI within its limits, or text with a unit."""
+        units = ", ".join(units_that_fit(self.unit))
+        options: list[dict[str, Any]] = [
+            {"type": "number", "minimum": self.low, "maximum": self.high, "description": f"in SI: {self.unit}"},
+            {"type": "string", "pattern": r"^\s*[+-]?[0-9.]", "description": f"number, space, unit: {units}"},
+        ]
+        if self.auto:
+            options.append({"const": "auto"})
+        if self.optional or self.auto:
+            options.append({"type": "null"})
+        return {"anyOf": options}
+
+
+@dataclass(frozen=True)
+class Number(Kind):
+    """A number without a unit, from `low` to `high`, both allowed."""
+
+    low: float
+    high: float
+    optional: bool = False
+
+    def read(self, value: Any) -> float | None:
+        """The number."""
+        if value is None and self.optional:
+            return None
+        if isinstance(value, str):
+            raise wrong(f"{shown(value)} is text; a plain number from {self.low:g} to {self.high:g} is needed")
+        if not is_number(value):
+            raise wrong(f"{shown(value)} is no number; a number from {self.low:g} to {self.high:g} is needed")
+        number = as_float(value)
+        if not self.low <= number <= self.high:
+            raise wrong(f"{shown(value)} is out of range; allowed: {self.low:g} to {self.high:g}")
+        return number
+
+    def json(self) -> dict[str, Any]:
+        """A number within its limits."""
+        number = {"type": "number", "minimum": self.low, "maximum": self.high}
+        return {"anyOf": [number, {"type": "null"}]} if self.optional else number
+
+
+@dataclass(frozen=True)
+class Whole(Kind):
+    """A whole number from `low` to `high`, both allowed."""
+
+    low: int
+    high: int
+
+    def read(self, value: Any) -> int:
+        """The number."""
+        allowed = f"a whole number from {self.low} to {self.high} is needed"
+        if isinstance(value, str):
+            raise wrong(f"{shown(value)} is text; {allowed}, without quotes")
+        if not isinstance(value, numbers.Integral) or isinstance(value, bool):
+            raise wrong(f"{shown(value)} is no whole number; {allowed}")
+        number = int(value)
+        if not self.low <= number <= self.high:
+            raise wrong(f"{shown(number)} is out of range; {allowed}")
+        return number
+
+    def json(self) -> dict[str, Any]:
+        """An integer within its limits."""
+        return {"type": "integer", "minimum": self.low, "maximum": self.high}
+
+
+@dataclass(frozen=True)
+class Choice(Kind):
+    """One word out of a few. `later`: words that the design knows but that are not built yet."""
+
+    words: tuple[str, ...]
+    later: tuple[str, ...] = ()
+
+    def read(self, value: Any) -> str:
+        """The word."""
+        allowed = f"allowed: {', '.join(self.words)}"
+        if isinstance(value, str) and value in self.words:
+            return value
+        if isinstance(value, str) and value in self.later:
+            raise wrong(f"{shown(value)} is not built yet; {allowed}")
+        hint = did_you_mean(value, self.words) if isinstance(value, str) else ""
+        raise wrong(f"{shown(value)} is not known here; {hint}{allowed}")
+
+    def json(self) -> dict[str, Any]:
+        """An enumeration."""
+        return {"enum": list(self.words)} if len(self.words) > 1 else {"const": self.words[0]}
+
+
+@dataclass(frozen=True)
+class Text(Kind):
+    """Text that is not empty."""
+
+    what: str
+    optional: bool = False
+
+    def read(self, value: Any) -> str | None:
+        """The text."""
+        if value is None and self.optional:
+            return None
+        if not isinstance(value, str) or not value.strip():
+            raise wrong(f"{shown(value)} is no {self.what}; text is needed")
+        return value
+
+    def json(self) -> dict[str, Any]:
+        """Text."""
+        text = {"type": "string", "minLength": 1}
+        return {"anyOf": [text, {"type": "null"}]} if self.optional else text
+
+
+@dataclass(frozen=True)
+class Row(Kind):
+    """A short list with a meaning for each item: `[x, y]`, `[time, speed]`."""
+
+    names: tuple[str, ...]
+    kinds: tuple[Kind, ...]
+
+    def read(self, value: Any) -> tuple[Any, ...]:
+        """The items, each read by its kind."""
+        form = f"[{', '.join(self.names)}]"
+        if not isinstance(value, list | tuple):
+            raise wrong(f"{shown(value)} is no list; {form} is needed")
+        if len(value) != len(self.kinds):
+            raise wrong(f"has {plural(len(value), 'item')}; {form} is needed")
+        faults = Faults()
+        row = tuple(
+            faults.read((i,), kind.read, item) for i, (kind, item) in enumerate(zip(self.kinds, value, strict=True))
+        )
+        faults.raise_if_any()
+        return row
+
+    def json(self) -> dict[str, Any]:
+        """An array of fixed length."""
+        return {"type": "array", "prefixItems": [kind.json() for kind in self.kinds], **_exactly(len(self.kinds))}
+
+
+@dataclass(frozen=True)
+class Table(Kind):
+    """A list of items of one kind; `fewest` to `most` of them."""
+
+    row: Kind
+    fewest: int
+    most: int
+    item: str = "row"
+    optional: bool = False
+
+    def read(self, value: Any) -> tuple[Any, ...] | None:
+        """The items, each read by its kind."""
+        if value is None and self.optional:
+            return None
+        if not isinstance(value, list | tuple):
+            raise wrong(f"{shown(value)} is no list; a list of {self.item}s is needed")
+        if not self.fewest <= len(value) <= self.most:
+            limit = (
+                f"at least {self.fewest} are needed" if len(value) < self.fewest else f"at most {self.most} are allowed"
+            )
+            raise wrong(f"has {plural(len(value), self.item)}; {limit}")
+        faults = Faults()
+        rows = tuple(faults.read((i,), self.row.read, item) for i, item in enumerate(value))
+        faults.raise_if_any()
+        return rows
+
+    def json(self) -> dict[str, Any]:
+        """An array of such items."""
+        array = {"type": "array", "items": self.row.json(), "minItems": self.fewest, "maxItems": self.most}
+        return {"anyOf": [array, {"type": "null"}]} if self.optional else array
+
+
+def _exactly(count: int) -> dict[str, int]:
+    return {"minItems": count, "maxItems": count}
+
+
+def is_number(value: object) -> bool:
+    """Whether a value is a real number; true and false are not."""
+    return isinstance(value, numbers.Real) and not isinstance(value, bool)
+
+
+def as_float(value: Any) -> float:
+    """A real number as a finite float."""
+    try:
+        number = float(value)
+    except OverflowError:
+        raise wrong(f"{shown(value)} is too large a number") from None
+    if not math.isfinite(number):
+        raise wrong(f"{number} is no finite number")
+    return number
+
+
+class Section(BaseModel):
+    """A part of the scenario: a mapping with known keys. Frozen; unknown keys are refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    what: ClassVar[str] = "section"
+    """What the section is, for the message when something else stands in its place."""
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _in_our_words(cls, data: Any, handler: ModelWrapValidatorHandler[Any]) -> Any:
+        try:
+            return handler(data)
+        except ValidationError as error:
+            raise_in_our_words(cls, data, error)
+
+    def to_plain(self) -> dict[str, Any]:
+        """The section as a scenario file could hold it: SI numbers, text and lists only. What is None is left out, or
+        `auto`.
+        """
+        plain: dict[str, Any] = {}
+        for name, info in type(self).model_fields.items():
+            value = getattr(self, name)
+            auto = any(isinstance(kind, Quantity) and kind.auto for kind in info.metadata)
+            if value is not None or auto:
+                plain[info.alias or name] = "auto" if value is None else to_plain(value)
+        return plain
+
+
+@dataclass(frozen=True)
+class Form:
+    """Lets a field hold one thing while a file gives it in a form of its own, whose `resolve()` makes the thing.
+
+    form : type of what a file holds. resolved : classes that are taken as they are. check : called first with the raw
+        value, raises.
+    """
+
+    form: Any
+    resolved: tuple[type, ...]
+    check: Callable[[Any], None] | None = None
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> core_schema.CoreSchema:
+        """Pydantic's hook: read the form, then resolve it."""
+
+        def read(value: Any, form: core_schema.ValidatorFunctionWrapHandler) -> Any:
+            if isinstance(value, self.resolved):
+                return value
+            if self.check is not None:
+                self.check(value)
+            found = form(value)
+            return found if isinstance(found, self.resolved) else found.resolve()
+
+        return core_schema.no_info_wrap_validator_function(read, handler.generate_schema(self.form))
+
+
+def to_plain(value: Any) -> Any:
+    """A value of a section as plain data."""
+    if isinstance(value, Section):
+        return value.to_plain()
+    if isinstance(value, list | tuple):
+        return [to_plain(item) for item in value]
+    return value
+
+
+def raise_in_our_words(cls: type[Section], data: Any, error: ValidationError) -> NoReturn:
+    """Raise the same faults again, pydantic's own sentences about the keys of `cls` replaced by ours."""
+    all_details = error.errors(include_url=False)
+    keys = {info.alias or name: info for name, info in cls.model_fields.items()}
+    unknown = [str(d["loc"][0]) for d in all_details if d["type"] == "extra_forbidden" and len(d["loc"]) == 1]
+    absent = [key for key in keys if not isinstance(data, dict) or key not in data]
+    misspelt = {did[0] for key in unknown if (did := nearest(key, absent, count=1))}
+    faults = Faults()
+    for details in all_details:
+        kind, loc = details["type"], details["loc"]
+        ours = details.get("ctx", {}) if kind.startswith("scenario") else {}
+        missing = kind in ("missing", "scenario_missing")
+        if missing and len(loc) == 1 and not misspelt.isdisjoint((loc[0], *ours.get("instead", ()))):
+            continue  # the misspelt key is the one mistake; that its right name is absent is no second one
+        text = ours["text"] if ours else _sentence(cls, kind, loc, data, details)
+        faults.add(loc, wrong(text, missing=missing, file=ours.get("file"), line=ours.get("line")), details["input"])
+    faults.raise_if_any()
+    raise error
+
+
+def _sentence(cls: type[Section], kind: str, loc: Loc, data: Any, details: Any) -> str:
+    keys = {info.alias or name: info for name, info in cls.model_fields.items()}
+    if kind == "extra_forbidden":
+        # A key that is already there cannot be meant, unless nothing else comes near.
+        absent = [key for key in keys if key not in data]
+        hint = did_you_mean(str(loc[-1]), absent) or did_you_mean(str(loc[-1]), list(keys))
+        return f"unknown key; {hint}allowed: {', '.join(keys)}"
+    if kind == "missing" and len(loc) == 1:
+        info = keys[str(loc[0])]
+        example = f"; for example {loc[0]}: {info.examples[0]}" if info.examples else ""
+        return f"is missing: {info.description}{example}"
+    if kind in ("model_type", "model_attributes_type", "dict_type"):
+        found = details["input"]
+        start = "is empty;" if found is None else f"{shown(found)} stands where"
+        return f"{start} {cls.what} is needed: lines of 'key: value' with {', '.join(keys)}"
+    if kind in ("tuple_type", "list_type"):
+        return f"{shown(details['input'])} is no list; a list is needed"
+    return str(details["msg"])

@@ -1,0 +1,49 @@
+"""The quantities of a scenario with their plausible ranges, one table for all sections.
+
+What lies outside is refused as a slip (a wire of 0.36 m diameter), not as bad physics; the ranges are wide on purpose.
+"""
+
+from __future__ import annotations
+
+import math
+
+from gw_exudyn.scenario.fields import Number, Quantity, Row, Table
+
+FULL_TURN = 2 * math.pi
+
+WIRE_DIAMETER = Quantity("m", 0.05e-3, 5e-3, "mm", optional=True)
+WIRE_LENGTH = Quantity("m", 1e-3, 5.0, "mm", optional=True)
+ARC_LENGTH = Quantity("m", 0.0, 5.0, "mm")
+BENDING_STIFFNESS = Quantity("N*m^2", 1e-10, 1.0, "N*mm^2")
+DENSITY = Quantity("kg/m^3", 500.0, 25000.0, "kg/m^3", optional=True)
+DAMPING_TIME = Quantity("s", 0.0, 10.0, "s")
+REST_CURVATURE = Quantity("1/m", -1000.0, 1000.0, "1/m", also=("rad/m",), auto=True)
+TIP_LENGTH = Quantity("m", 1e-5, 1.0, "mm", optional=True)
+TIP_ANGLE = Quantity("rad", -FULL_TURN, FULL_TURN, "deg", optional=True)
+
+VESSEL_DIAMETER = Quantity("m", 0.1e-3, 100e-3, "mm")
+VESSEL_LENGTH = Quantity("m", 1e-3, 5.0, "mm")
+LEAD_LENGTH = Quantity("m", 0.0, 5.0, "mm")
+ARC_RADIUS = Quantity("m", 0.1e-3, 5.0, "mm")
+ANGLE = Quantity("rad", -FULL_TURN, FULL_TURN, "deg")
+COORDINATE = Quantity("m", -10.0, 10.0, "mm")
+POINT = Row(("x", "y"), (COORDINATE, COORDINATE))
+BORE = Quantity("m", 0.05e-3, 50e-3, "mm")
+
+FRICTION = Number(0.0, 2.0)
+FRICTION_OR_NONE = Number(0.0, 2.0, optional=True)
+WALL_STIFFNESS = Quantity("N/m", 1e-3, 1e9, "N/m", auto=True)
+WALL_DAMPING = Quantity("N*s/m", 0.0, 1e6, "N*s/m", auto=True)
+
+SPEED = Quantity("m/s", -1.0, 1.0, "mm/s")
+SPEED_OR_NONE = Quantity("m/s", -1.0, 1.0, "mm/s", optional=True)
+TRAVEL = Quantity("m", 1e-6, 5.0, "mm", optional=True)
+DURATION = Quantity("s", 1e-3, 1e5, "s", optional=True)
+RAMP = Quantity("s", 0.0, 1e5, "s", optional=True)
+INSTANT = Quantity("s", 0.0, 1e5, "s")
+SPEED_TABLE = Table(Row(("time", "speed"), (INSTANT, SPEED)), 2, 100_000, optional=True)
+
+SOLVER_STEP = Quantity("s", 1e-4, 1.0, "s")
+SMALLEST_STEP = Quantity("s", 1e-9, 1.0, "s")
+TOLERANCE = Number(1e-12, 1e-3)
+OUTPUT_INTERVAL = Quantity("s", 1e-4, 1e5, "s")

@@ -1,0 +1,205 @@
+"""The vessel of a scenario. Frame: x and y in metres; the lumen is where the wire may be."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator
+
+from gw_exudyn.scenario.fields import KIND_TAG, Choice, Faults, Form, Section, Table, Text, Whole, wrong
+from gw_exudyn.scenario.kinds import ANGLE, ARC_RADIUS, LEAD_LENGTH, POINT, VESSEL_DIAMETER, VESSEL_LENGTH
+from gw_exudyn.scenario.outline import (
+    MOST_POINTS,
+    Outline,
+    Points,
+    check_outline,
+    closed,
+    counter_clockwise,
+    read_outline,
+)
+from gw_exudyn.scenario.words import shown
+
+VESSEL_KINDS = Choice(("straight", "arc", "polygon"), later=("branches", "centreline"))
+_STEEPEST_FACET = math.radians(45)
+
+_END = Field(default="open", description="open: the far end is no wall; dead: it is closed")
+
+
+class StraightVessel(Section):
+    """A straight channel: its lumen is 0 <= x <= length, abs(y) <= diameter / 2.
+
+    length, diameter : m. end : `open`, no wall at x = length, or `dead`.
+    """
+
+    what: ClassVar[str] = "a straight vessel"
+
+    kind: Annotated[Literal["straight"], Choice(("straight",))]
+    length: Annotated[float, VESSEL_LENGTH] = Field(description="length along x", examples=["100 mm"])
+    diameter: Annotated[float, VESSEL_DIAMETER] = Field(description="width of the lumen", examples=["4 mm"])
+    end: Annotated[str, Choice(("open", "dead"))] = _END
+
+
+class ArcVessel(Section):
+    """A channel whose centreline runs `lead_in` along +x from the origin, turns on an arc, and goes straight on.
+
+    radius : m, of the centreline. angle : rad, positive to the left. diameter, lead_in, lead_out : m, lead_out
+        follows the arc. facets :
+        straight wall pieces that make up each side of the arc. end : `open` or `dead`.
+    """
+
+    what: ClassVar[str] = "an arc vessel"
+
+    kind: Annotated[Literal["arc"], Choice(("arc",))]
+    diameter: Annotated[float, VESSEL_DIAMETER] = Field(description="width of the lumen", examples=["4 mm"])
+    radius: Annotated[float, ARC_RADIUS] = Field(description="radius of the centreline", examples=["15 mm"])
+    angle: Annotated[float, ANGLE] = Field(description="angle of the turn, positive to the left", examples=["90 deg"])
+    facets: Annotated[int, Whole(1, 5000)] = Field(
+        default=24, description="straight wall pieces on each side of the arc"
+    )
+    lead_in: Annotated[float, LEAD_LENGTH] = Field(
+        default=0.0, description="straight part before the arc, along +x from the origin"
+    )
+    lead_out: Annotated[float, LEAD_LENGTH] = Field(default=0.0, description="straight part after the arc")
+    end: Annotated[str, Choice(("open", "dead"))] = _END
+
+    @field_validator("radius", mode="after")
+    @classmethod
+    def _beyond_half_the_lumen(cls, radius: float, info: ValidationInfo) -> float:
+        diameter = info.data.get("diameter")
+        if diameter is not None and radius <= diameter / 2:
+            half = f"half the diameter, {diameter * 500:.6g} mm"
+            raise wrong(f"{radius * 1e3:.6g} mm is not beyond {half}: the inner wall would vanish")
+        return radius
+
+    @field_validator("angle", mode="after")
+    @classmethod
+    def _turns(cls, angle: float) -> float:
+        if angle == 0:
+            raise wrong("0 deg is no turn; take kind: straight")
+        return angle
+
+    @field_validator("facets", mode="after")
+    @classmethod
+    def _not_too_steep(cls, facets: int, info: ValidationInfo) -> int:
+        angle = abs(info.data.get("angle", 0.0))
+        if angle / facets > _STEEPEST_FACET * (1 + 1e-9):
+            fewest = math.ceil(angle / _STEEPEST_FACET * (1 - 1e-9))
+            raise wrong(
+                f"{facets} facets turn {math.degrees(angle / facets):.4g} deg each, at most 45; take {fewest} or more"
+            )
+        return facets
+
+
+class PolygonVessel(Section):
+    """A lumen with a closed outline.
+
+    points : ((x, y), ...), m, counter-clockwise, the first not repeated at the end. open_edges : indices of the edges
+        (point i to point i + 1) that are open ends rather than walls, rising.
+    """
+
+    kind: Literal["polygon"] = "polygon"
+    points: Points
+    open_edges: tuple[int, ...] = ()
+
+
+class PolygonForm(Section):
+    """A lumen with a closed outline, from a CSV file or a list of points."""
+
+    what: ClassVar[str] = "a polygon vessel"
+
+    kind: Annotated[Literal["polygon"], Choice(("polygon",))]
+    file: Annotated[Outline | None, Text("file name", optional=True)] = Field(
+        default=None,
+        description="CSV file, relative to this; header x,y (metres) or x [mm],y [mm]; a column open marks open ends",
+    )
+    points: Annotated[Points | None, Table(POINT, 3, MOST_POINTS, "point", optional=True)] = Field(
+        default=None, validate_default=True, description="corners of the outline in order"
+    )
+    open_edges: Annotated[tuple[int, ...], Table(Whole(0, MOST_POINTS), 0, MOST_POINTS, "edge")] = Field(
+        default=(), description="edges that are open ends: edge i goes from point i to point i + 1"
+    )
+
+    @field_validator("file", mode="after")
+    @classmethod
+    def _read(cls, name: Any, info: ValidationInfo) -> Outline | None:
+        if name is None:
+            return None
+        outline = read_outline(Path((info.context or {}).get("folder", "."), str(name)))
+        check_outline(outline)
+        return outline
+
+    @field_validator("points", mode="after")
+    @classmethod
+    def _either(cls, points: Points | None, info: ValidationInfo) -> Points | None:
+        if "file" not in info.data:
+            return points  # the file is wrong itself, which is told already
+        if (points is None) == (info.data["file"] is None):
+            if points is None:
+                raise wrong(
+                    "is missing: give file: outline.csv, or points: [[0 mm, 0 mm], ...]",
+                    missing=True,
+                    instead=("file",),
+                )
+            raise wrong("stands beside file; give one of the two")
+        if points is not None:
+            points = closed(Outline(points)).points
+            check_outline(Outline(points))
+        return points
+
+    @field_validator("open_edges", mode="after")
+    @classmethod
+    def _edges_exist(cls, edges: tuple[int, ...], info: ValidationInfo) -> tuple[int, ...]:
+        outline, points = info.data.get("file"), info.data.get("points")
+        if edges and outline is not None and outline.open_edges:
+            raise wrong("stands beside the column 'open' of the file; give one of the two")
+        count = len(outline.points) if outline is not None else len(points or ())
+        faults = Faults()
+        for i, edge in enumerate(edges):
+            if count and edge >= count:
+                faults.add((i,), f"there is no edge {edge}; the outline has {count}, 0 to {count - 1}")
+            elif edge in edges[:i]:
+                faults.add((i,), f"edge {edge} is given twice")
+        faults.raise_if_any()
+        return edges
+
+    def resolve(self) -> PolygonVessel:
+        """The outline, counter-clockwise."""
+        given = self.file or Outline(self.points or (), self.open_edges)
+        points, edges = counter_clockwise(given.points, given.open_edges or self.open_edges)
+        return PolygonVessel(points=points, open_edges=edges)
+
+
+def _tag(vessel: Any) -> str:
+    kind = vessel.get("kind") if isinstance(vessel, dict) else getattr(vessel, "kind", None)
+    return f"{KIND_TAG}{kind}"
+
+
+VesselForm = Annotated[
+    Annotated[StraightVessel, Tag(f"{KIND_TAG}straight")]
+    | Annotated[ArcVessel, Tag(f"{KIND_TAG}arc")]
+    | Annotated[PolygonForm, Tag(f"{KIND_TAG}polygon")],
+    Discriminator(_tag),
+]
+"""What a file may hold."""
+
+
+def _check_kind(vessel: Any) -> None:
+    allowed = ", ".join(VESSEL_KINDS.words)
+    if not isinstance(vessel, dict):
+        found = "is empty; a vessel is needed" if vessel is None else f"{shown(vessel)} stands where a vessel is needed"
+        raise wrong(f"{found}: lines of 'key: value', the first kind: {allowed.replace(', ', ' | ')}")
+    faults = Faults()
+    if "kind" not in vessel:
+        faults.add(("kind",), wrong(f"is missing: what the vessel is; allowed: {allowed}", missing=True))
+    else:
+        faults.read(("kind",), VESSEL_KINDS.read, vessel["kind"])
+    faults.raise_if_any()
+
+
+Vessel = Annotated[
+    StraightVessel | ArcVessel | PolygonVessel,
+    Form(VesselForm, (StraightVessel, ArcVessel, PolygonVessel), check=_check_kind),
+]
+"""The vessel as the program sees it, read from any of the forms."""

@@ -1,0 +1,85 @@
+"""Metrics: numbers that can be checked by hand on a small result."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from synthetic import FROM_TIP, StandInScenario, made_up_result, sample
+
+from gw_exudyn.metrics import metrics
+from gw_exudyn.result import Result, SnapEvent, Status, StatusReport
+
+
+def small(snaps=(), **series):
+    """A result of as many instants, one second apart, as each given series has values."""
+    count = len(next(iter(series.values())))
+    samples = [
+        sample(float(i), 0.0, 0.0, FROM_TIP) | {name: row[i] for name, row in series.items()} for i in range(count)
+    ]
+    return Result.from_samples(
+        samples,
+        scenario=StandInScenario(),
+        status=StatusReport(Status.COMPLETED),
+        node_arc_length=FROM_TIP,
+        joint_arc_length=FROM_TIP[:-1],
+        snaps=snaps,
+    )
+
+
+def values(result):
+    return {name: metric.value for name, metric in metrics(result).items()}
+
+
+def test_the_path_of_the_tip_counts_there_and_back():
+    found = values(small(tip_x=[0.0, 3e-3, 3e-3, 0.0], tip_y=[0.0, 0.0, 4e-3, 0.0]))
+    assert found["tip_path_length"] == pytest.approx(12e-3)
+    assert found["final_tip_x"] == 0.0
+
+
+def test_peaks_come_with_their_times():
+    found = values(small(push_force=[0.0, 0.5, -0.7, 0.1], wall_force_x=[0, 3.0, 0, 0], wall_force_y=[0, -4.0, 0, 4.5]))
+    assert (found["push_force_max"], found["push_force_max_time"]) == (0.5, 1.0)
+    assert (found["pull_force_max"], found["pull_force_max_time"]) == (0.7, 2.0)
+    assert (found["wall_force_resultant_max"], found["wall_force_resultant_max_time"]) == (pytest.approx(5.0), 1.0)
+
+
+def test_depth_is_the_deepest_and_the_last():
+    found = values(small(insertion_depth=[0.0, 0.08, 0.02]))
+    assert (found["insertion_depth_max"], found["final_insertion_depth"]) == (0.08, 0.02)
+
+
+def test_the_energy_error_is_measured_on_the_largest_work():
+    found = values(small(energy_error=[0.0, -2e-6, 1e-6], insertion_work=[0.0, 1e-3, -4e-3]))
+    assert found["energy_error_max"] == pytest.approx(2e-6)
+    assert found["energy_error_relative"] == pytest.approx(5e-4)
+
+
+def test_without_work_there_is_no_relative_energy_error():
+    assert np.isnan(values(small(energy_error=[0.0, 0.0]))["energy_error_relative"])
+
+
+def test_snaps_are_counted_and_the_largest_named():
+    found = values(small(snaps=(SnapEvent(1.0, 2e-6), SnapEvent(2.0, 5e-6)), tip_x=[0.0, 0.0]))
+    assert (found["snaps"], found["snap_energy_max"]) == (2.0, 5e-6)
+    assert values(small(tip_x=[0.0]))["snap_energy_max"] == 0.0
+
+
+def test_iterations_per_step():
+    found = values(small(solver_steps=[0, 10, 20], newton_iterations=[0, 45, 70]))
+    assert found["newton_iterations_per_step"] == 3.5
+    assert np.isnan(values(small(solver_steps=[0], newton_iterations=[0]))["newton_iterations_per_step"])
+
+
+def test_values_that_are_not_finite_do_not_hide_the_others():
+    found = values(small(push_force=[0.0, 0.5, np.nan], wall_force_max=[np.nan, np.nan, np.nan]))
+    assert (found["push_force_max"], found["push_force_max_time"]) == (0.5, 1.0)
+    assert np.isnan(found["wall_force_max"])
+
+
+def test_each_metric_has_a_unit_and_a_meaning():
+    for name, metric in metrics(made_up_result()).items():
+        assert isinstance(metric.value, float), name
+        assert metric.unit, name
+        assert len(metric.meaning.split()) > 2, name
+    units = {name: metric.unit for name, metric in metrics(made_up_result()).items()}
+    assert (units["push_force_max"], units["push_force_max_time"], units["tip_path_length"]) == ("N", "s", "m")
