@@ -1,0 +1,127 @@
+"""The multibody system in Exudyn: a hub on the catheter's axis, rigid segments, revolute joints, torsional springs.
+
+Coordinates in their global order: the hub's (x, y, angle), then those of segments 0 to n - 1. All in the catheter's frame.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gw_exudyn.engine.library import exudyn
+from gw_exudyn.model import Model
+from gw_exudyn.model.wire import Wire
+
+Floats = NDArray[np.float64]
+
+HUB_COORDINATES = 3
+
+
+@dataclass(frozen=True)
+class System:
+    """The assembled system and what the stepping needs to know of it.
+
+    reference : (n, 3), place of the centres (m) and angles (rad) of the segments at the start; Exudyn's coordinates count
+        from there. hub_mass : kg. drive : the constraint that places the hub. contact : the object that carries the
+        contact forces of all segments.
+    """
+
+    container: Any
+    mbs: Any
+    reference: Floats
+    hub_mass: float
+    drive: int
+    contact: int
+
+
+Jacobian = Callable[[Any, float, int, list[float], list[float], float, float], Any]
+
+
+def assemble(model: Model, contact_jacobian: Jacobian) -> System:
+    """Build the system at rest in the catheter, the tip at its exit, moving with the drive's first speed."""
+    import exudyn.itemInterface as items
+
+    exu, wire = exudyn(), model.wire
+    container = exu.SystemContainer()
+    mbs = container.AddSystem()
+    reference = reference_places(wire)
+    speed = model.drive.speed_at(0.0)
+    hub_mass = float(wire.mass[0])
+    hub, hub_node = _body(mbs, items, (-wire.length, 0.0, 0.0), hub_mass, float(wire.inertia[0]), speed)
+    drive = _guide(mbs, items, hub_node)
+    bodies, nodes = [], []
+    for i in range(wire.segments):
+        body, node = _body(mbs, items, reference[i], float(wire.mass[i]), float(wire.inertia[i]), speed)
+        bodies.append(body)
+        nodes.append(node)
+    for i in range(wire.segments):
+        before, before_node, reach = (bodies[i - 1], nodes[i - 1], wire.lengths[i - 1] / 2) if i else (hub, hub_node, 0.0)
+        _joint(mbs, items, wire, i, (before, before_node, float(reach)), (bodies[i], nodes[i]))
+    count = 3 * wire.segments
+    empty = exu.MatrixContainer()
+    empty.SetWithSparseMatrix(np.zeros((1, 3)), count, count)  # sparse, so that the contact's tangent is too
+    contact = mbs.AddObject(
+        items.ObjectGenericODE2(
+            nodeNumbers=nodes,
+            massMatrix=empty,
+            stiffnessMatrix=empty,
+            dampingMatrix=empty,
+            forceVector=np.zeros(count),
+            jacobianUserFunction=contact_jacobian,
+        )
+    )
+    mbs.Assemble()
+    return System(container, mbs, reference, hub_mass, drive, contact)
+
+
+def reference_places(wire: Wire) -> Floats:
+    """(n, 3): centre (m) and angle (rad) of each segment of the straight wire, its tip at the origin."""
+    places = np.zeros((wire.segments, 3))
+    places[:, 0] = -(wire.node_arc_length[:-1] + wire.node_arc_length[1:]) / 2
+    return places
+
+
+def _body(mbs: Any, items: Any, place: Any, mass: float, inertia: float, speed: float) -> tuple[int, int]:
+    node = mbs.AddNode(
+        items.NodeRigidBody2D(referenceCoordinates=[float(x) for x in place], initialVelocities=[speed, 0.0, 0.0])
+    )
+    return mbs.AddObject(items.ObjectRigidBody2D(mass=mass, inertia=inertia, nodeNumber=node)), node
+
+
+def _guide(mbs: Any, items: Any, hub_node: int) -> int:
+    """Hold the hub on the axis without turning; the first constraint, which is returned, places it along the axis."""
+    ground = mbs.AddMarker(
+        items.MarkerNodeCoordinate(nodeNumber=mbs.AddNode(items.NodePointGround()), coordinate=0)
+    )
+    constraints = []
+    for coordinate in range(HUB_COORDINATES):
+        marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=hub_node, coordinate=coordinate))
+        constraints.append(mbs.AddObject(items.CoordinateConstraint(markerNumbers=[ground, marker], offset=0.0)))
+    return int(constraints[0])
+
+
+def _joint(mbs: Any, items: Any, wire: Wire, i: int, before: tuple[int, int, float], after: tuple[int, int]) -> None:
+    """Revolute joint and torsional spring-damper proximal to segment i.
+
+    The spring-damper acts between the two rotation coordinates, which in the plane is the torsional spring-damper, and
+    cheaper than its connector in space.
+    """
+    body, node, reach = before
+    distal_end = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[reach, 0.0, 0.0]))
+    proximal_end = mbs.AddMarker(
+        items.MarkerBodyRigid(bodyNumber=after[0], localPosition=[-float(wire.lengths[i]) / 2, 0.0, 0.0])
+    )
+    mbs.AddObject(items.ObjectJointRevolute2D(markerNumbers=[distal_end, proximal_end]))
+    turns = [mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=n, coordinate=2)) for n in (node, after[1])]
+    mbs.AddObject(
+        items.CoordinateSpringDamper(
+            markerNumbers=turns,
+            stiffness=float(wire.joint_stiffness[i]),
+            damping=float(wire.joint_damping[i]),
+            offset=float(wire.rest_angle[i]),
+        )
+    )

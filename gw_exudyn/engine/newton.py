@@ -1,0 +1,151 @@
+"""What Exudyn's Newton iteration asks of us: contact forces and tangent, a limit on its steps, checks of its result."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gw_exudyn.engine.assembly import HUB_COORDINATES, System
+from gw_exudyn.engine.library import exudyn
+from gw_exudyn.engine.settings import acceleration_factor, velocity_factor
+from gw_exudyn.model.contact import Contact
+
+Floats = NDArray[np.float64]
+
+_LIMIT = 0.75
+"""Largest move of a segment in one Newton step, in radii of the wire. With the signed gap it keeps corners on their side."""
+
+_TUNNELLED = 0.5
+"""Penetration, in radii, that one step may not reach from less than the trusted depth."""
+
+_HELD_ITERATIONS = 2
+"""Iterations in which the tangent keeps the stiffness of the contacts at the step's start."""
+
+_ACCEPT, _REFUSE = [0.0, -1.0], [1e9, -1.0]
+
+
+class Newton:
+    """The callbacks of one system. Exudyn's coordinates count from the reference places; contact wants places."""
+
+    def __init__(self, contact: Contact) -> None:
+        self._contact = contact
+        count = contact.wire.segments
+        rows = (3 * np.arange(count)[:, None] + np.repeat(np.arange(3), 3)).ravel()
+        columns = (3 * np.arange(count)[:, None] + np.tile(np.arange(3), 3)).ravel()
+        # The same pattern at every call lets the factorisation keep its analysis.
+        self._triplets = np.column_stack([rows, columns, np.zeros(9 * count)]).astype(float)
+        self._limit = _LIMIT * contact.wire.radius
+        self._step = 1.0
+        self._end = 0.0
+        self._last: Floats = np.zeros(0)
+        self.reset_counts()
+
+    def reset_counts(self) -> None:
+        """Count from zero."""
+        self.residuals = self.iterations = self.tangents = self.refused = 0
+
+    def counts(self) -> dict[str, int]:
+        """Newton iterations, residuals and tangents evaluated, converged steps refused by the checks."""
+        return {
+            "newton_iterations": self.iterations,
+            "residuals": self.residuals,
+            "tangents": self.tangents,
+            "refused_steps": self.refused,
+        }
+
+    def set_counts(self, counts: list[int]) -> None:
+        """Go on counting from what `counts` gave."""
+        self.iterations, self.residuals, self.tangents, self.refused = counts
+
+    def attach(self, system: System) -> None:
+        """Work on this system."""
+        self._system = system
+        self._data = system.mbs.systemData
+
+    def install(self, start_trial: Callable[[float], float], end_step: Callable[[float], None]) -> None:
+        """Hand the callbacks to Exudyn. start_trial(end) -> step, s; end_step(time) for each accepted step."""
+        mbs = self._system.mbs
+
+        def before_step(_: Any, time: float) -> bool:
+            self._step = start_trial(time)
+            return True
+
+        def after_step(_: Any, time: float) -> bool:
+            # Exudyn calls this also where SolveSteps begins, at a time that is done.
+            if time > self._end:
+                self._end = time
+                end_step(time)
+            return True
+
+        mbs.SetPreStepUserFunction(before_step)
+        mbs.SetPreNewtonResidualUserFunction(self._before_residual)
+        mbs.SetPostNewtonUserFunction(self._after_newton)
+        mbs.SetPostStepUserFunction(after_step)
+
+    def look(self, q: Floats, q_t: Floats, time: float) -> None:
+        """Set the contact's motion from Exudyn's coordinates (3 n + 3,) outside of a step; steps after `time`, s, are new."""
+        self._move(q, q_t)
+        self._end = time
+
+    def tangent(self, _mbs: Any, _t: float, _item: int, _q: Any, _q_t: Any, factor: float, _factor_t: float) -> Any:
+        """Contact's share of the tangent at the place of the last residual. Exudyn wants minus the derivative of the force.
+
+        Position and velocity parts were joined with the ratio of the two factors, which the integrator fixes.
+        """
+        self.tangents += 1
+        np.multiply(self._contact.tangent, -factor, out=self._triplets[:, 2])
+        matrix = exudyn().MatrixContainer()
+        count = len(self._triplets) // 3
+        matrix.SetWithSparseMatrix(self._triplets, count, count)
+        return matrix
+
+    def _before_residual(self, mbs: Any, _time: float, iteration: int, _outer: int) -> None:
+        self.residuals += 1
+        self.iterations += iteration > 0
+        q = self._data.GetODE2Coordinates()
+        if iteration > 0:
+            q = self._limited(q)
+        self._last = q
+        self._move(q, self._data.GetODE2Coordinates_t())
+        self._contact.evaluate(1.0, velocity_factor(self._step), predicted=iteration < _HELD_ITERATIONS)
+        mbs.SetObjectParameter(self._system.contact, "forceVector", self._contact.force.reshape(-1))
+
+    def _move(self, q: Floats, q_t: Floats) -> None:
+        places = np.asarray(q)[HUB_COORDINATES:].reshape(-1, 3) + self._system.reference
+        self._contact.motion.set(places, np.asarray(q_t)[HUB_COORDINATES:].reshape(-1, 3))
+
+    def _limited(self, q: Floats) -> Floats:
+        """Shorten Newton's last step where it moves a segment too far: place, rate and acceleration together."""
+        change = q - self._last
+        shift = change[HUB_COORDINATES:].reshape(-1, 3)[:, :2]
+        largest = max(float(shift.max()), -float(shift.min()))
+        if largest <= self._limit:
+            return q
+        back = (self._limit / largest - 1) * change
+        data, step = self._data, self._step
+        shortened: Floats = q + back
+        data.SetODE2Coordinates(shortened)
+        data.SetODE2Coordinates_t(data.GetODE2Coordinates_t() + velocity_factor(step) * back)
+        data.SetODE2Coordinates_tt(data.GetODE2Coordinates_tt() + acceleration_factor(step) * back)
+        return shortened
+
+    def _after_newton(self, _mbs: Any, _time: float) -> list[float]:
+        """Refuse what converged to the wrong thing; the step is then cut."""
+        wrong = self._moved_too_far() or self._tunnelled() or self._unstable()
+        self.refused += wrong
+        return _REFUSE if wrong else _ACCEPT
+
+    def _moved_too_far(self) -> bool:
+        """Further than the pairs were searched for."""
+        motion = self._contact.motion
+        return float(np.abs(motion.q[:, :2] - motion.q0[:, :2]).max()) > self._contact.reach
+
+    def _tunnelled(self) -> bool:
+        return self._contact.deepest()[0] > _TUNNELLED * self._contact.wire.radius
+
+    def _unstable(self) -> bool:
+        wire = self._contact.wire
+        return self._contact.is_unstable(wire.joint_stiffness + velocity_factor(self._step) * wire.joint_damping)

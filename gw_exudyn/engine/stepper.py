@@ -1,0 +1,238 @@
+"""Stepping of the Exudyn system by one solver that lives through the run.
+
+Time runs on a grid of nominal steps that begins at zero. A step that does not converge, or whose result the checks
+refuse, is cut back, and ends at the next grid time all the same. A stop between two grid times is a step of its own that
+is taken back before the run goes on, so that results do not depend on how time is cut into calls.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+import numpy as np
+from numpy.typing import NDArray
+
+from gw_exudyn.engine.assembly import HUB_COORDINATES, System, assemble
+from gw_exudyn.engine.library import exudyn
+from gw_exudyn.engine.newton import Newton
+from gw_exudyn.engine.settings import simulation_settings
+from gw_exudyn.engine.state import State
+from gw_exudyn.errors import SolverError
+from gw_exudyn.model import Model
+from gw_exudyn.model.contact import Contact
+from gw_exudyn.model.drive import Drive
+from gw_exudyn.model.energy import Energies, Snapshot, advanced, snapshot, wall_start
+
+Floats = NDArray[np.float64]
+
+_SAME_TIME = 1e-9
+"""Times closer than this, s, are one."""
+
+
+@dataclass(frozen=True)
+class Release:
+    """Energy, J, that one solver step lost to the integrator: a snap-through that it skipped. time : s."""
+
+    time: float
+    energy: float
+
+
+class Stepper:
+    """A model in motion. Places and forces in the catheter's frame."""
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+        self.contact = Contact(model.wire, model.walls, model.law)
+        self.drive: Drive = model.drive
+        spec = model.scenario.solver
+        self._newton = Newton(self.contact)
+        self.system: System = assemble(model, self._newton.tangent)
+        self._newton.attach(self.system)
+        self._settings = simulation_settings(spec.step, spec.minimum_step, spec.tolerance)
+        self._solver = exudyn().MainSolverImplicitSecondOrder()
+        self._newton.install(self._start_trial, self._end_step)
+        if not self._solver.InitializeSolver(self.system.mbs, self._settings):
+            raise SolverError("Exudyn refused to initialise its solver for this model")
+        self._initial = self._first_state()
+        self.reset()
+
+    def reset(self) -> None:
+        """Back to the start: the straight wire in the catheter, the tip at the exit."""
+        self.drive = self.model.drive
+        self.steps, self.smallest_step = 0, math.inf
+        self._newton.reset_counts()
+        self.releases: list[Release] = []
+        self._grid: tuple[State, int] | None = None
+        self.restore(self._initial)
+
+    @property
+    def time(self) -> float:
+        """Time reached, s."""
+        return self._time
+
+    def advance(self, target: float) -> bool:
+        """Run to the time `target`, s; False where the solver finds no way on (the time reached is then the last good one).
+
+        Ctrl-C raises KeyboardInterrupt; the state is then that of the last step taken.
+        """
+        step = self.model.scenario.solver.step
+        if target > self._time + _SAME_TIME:
+            self._return_to_grid()
+        while self._time < target - _SAME_TIME:
+            following = (math.floor(self._time / step + 1e-6) + 1) * step
+            if following > target + _SAME_TIME:
+                self._grid = (self.state(), len(self.releases))
+                return self._solve(target)
+            if not self._solve(following):
+                return False
+        return True
+
+    def take_over(self, speed: float) -> None:
+        """From now on the drive has this constant speed, m/s. What was run so far stays."""
+        self._grid = None
+        self.drive = self.drive.taken_over_at(self._time, speed)
+
+    def _return_to_grid(self) -> None:
+        if self._grid is not None:
+            state, releases = self._grid
+            del self.releases[releases:]
+            self.restore(state)
+            self._grid = None
+
+    def _solve(self, end: float) -> bool:
+        """Exudyn's steps from the time reached to `end`."""
+        self._end = end
+        pieces = max(1, math.ceil((end - self._time) * self._fastest(end) / (self.contact.reach / 3) - 1e-9))
+        for piece in np.linspace(self._time, end, pieces + 1)[1:]:
+            it = self._solver.it
+            it.startTime = it.currentTime = self._time
+            it.endTime = float(piece)
+            it.maxStepSize = it.initialStepSize = it.currentStepSize = float(piece) - self._time
+            self._solver.it = it
+            if not self._solver.SolveSteps(self.system.mbs, self._settings):
+                return False
+        return True
+
+    def _fastest(self, end: float) -> float:
+        return max(abs(self.drive.speed_at(self._time)), abs(self.drive.speed_at(end)))
+
+    def _start_trial(self, end: float) -> float:
+        """Exudyn begins a (perhaps repeated) step that ends at `end`: place the hub. Returns the step, s."""
+        self.system.mbs.SetObjectParameter(self.system.drive, "offset", self.drive.position_at(end))
+        return end - self._time
+
+    def _end_step(self, time: float) -> None:
+        """A step was accepted: take over its forces, count its energies, find the pairs of the next."""
+        step = time - self._time
+        self.steps += 1
+        self.smallest_step = min(self.smallest_step, step)
+        self._time = time
+        before, lost = self._instant, self.energies.numerical_loss
+        self._instant = self._look()
+        acceleration = np.asarray(self.system.mbs.systemData.GetODE2Coordinates_tt())[HUB_COORDINATES:].reshape(-1, 3)
+        self.energies = advanced(
+            self.energies, self.contact, self._wall_start, before, self._instant, acceleration, step
+        )
+        self.releases.append(Release(time, self.energies.numerical_loss - lost))
+        self.contact.accept()
+        self._prepare()
+
+    def _look(self) -> Snapshot:
+        return snapshot(self.model.wire, self.contact.motion, self.push_force(), self.drive.position_at(self._time))
+
+    def _prepare(self) -> None:
+        self.contact.start_step()
+        self.contact.evaluate()
+        self._wall_start = wall_start(self.contact)
+
+    def push_force(self) -> float:
+        """Force of the drive on the wire along the catheter, N, positive when pushing: the constraint's, less the hub's
+        inertia."""
+        data = self.system.mbs.systemData
+        return -float(data.GetAECoordinates()[0]) - self.system.hub_mass * float(data.GetODE2Coordinates_tt()[0])
+
+    @property
+    def instant(self) -> Snapshot:
+        """Place, rate, push force and travel at the time reached."""
+        return self._instant
+
+    def state(self) -> State:
+        """The state at the time reached, for `restore`."""
+        data = self.system.mbs.systemData
+        return State(
+            time=self._time,
+            q=np.array(data.GetODE2Coordinates()),
+            q_t=np.array(data.GetODE2Coordinates_t()),
+            q_tt=np.array(data.GetODE2Coordinates_tt()),
+            algorithmic=np.array(self._solver.GetAAlgorithmic()),
+            multipliers=np.array(data.GetAECoordinates()),
+            contact=self.contact.memory,
+            energies=self.energies,
+        )
+
+    def restore(self, state: State) -> None:
+        """Go on from a state exactly as the run did that it was taken from."""
+        exu, data = exudyn(), self.system.mbs.systemData
+        initial, start = exu.ConfigurationType.Initial, exu.ConfigurationType.StartOfStep
+        data.SetODE2Coordinates(state.q, initial)
+        data.SetODE2Coordinates_t(state.q_t, initial)
+        # The integrator's own accelerations can only be set as initial ones.
+        data.SetODE2Coordinates_tt(state.algorithmic, initial)
+        self._solver.InitializeSolverInitialConditions(self.system.mbs, self._settings)
+        for configuration in (exu.ConfigurationType.Current, start):
+            data.SetODE2Coordinates(state.q, configuration)
+            data.SetODE2Coordinates_t(state.q_t, configuration)
+            data.SetODE2Coordinates_tt(state.q_tt, configuration)
+            data.SetAECoordinates(state.multipliers, configuration)
+            data.SetTime(state.time, configuration)
+        self._time = state.time
+        self.energies = state.energies
+        self.contact.memory = state.contact
+        self._newton.look(state.q, state.q_t, state.time)
+        self._instant = self._look()
+        self._prepare()
+
+    @property
+    def grid_state(self) -> State | None:
+        """The start of the step that was stopped half-way, where the time reached lies between two grid times."""
+        return None if self._grid is None else self._grid[0]
+
+    def bookkeeping(self) -> Floats:
+        """Counts and releases as numbers, for `set_everything`."""
+        kept = len(self.releases) if self._grid is None else self._grid[1]
+        rows = [value for release in self.releases for value in (release.time, release.energy)]
+        return np.array([self.steps, self.smallest_step, *self._newton.counts().values(), kept, *rows])
+
+    def set_everything(self, now: State, grid: State | None, taken_over: tuple[float, ...], bookkeeping: Floats) -> None:
+        """Go on from what `state`, `grid_state`, the drive's `taken_over` and `bookkeeping` gave."""
+        counts = len(self._newton.counts())
+        self.steps, self.smallest_step = int(bookkeeping[0]), float(bookkeeping[1])
+        self._newton.set_counts([int(x) for x in bookkeeping[2 : 2 + counts]])
+        rows = bookkeeping[3 + counts :].reshape(-1, 2)
+        self.releases = [Release(float(time), float(energy)) for time, energy in rows]
+        self.drive = self.model.drive
+        if taken_over:
+            since, position, speed = taken_over
+            self.drive = replace(self.model.drive, taken_over=(since, position, speed))
+        self._grid = None if grid is None else (grid, int(bookkeeping[2 + counts]))
+        self.restore(now)
+
+    def _first_state(self) -> State:
+        """At rest in the catheter; corners beside the wire from the start (its own lips) know their side."""
+        data = self.system.mbs.systemData
+        self._time = 0.0
+        q, q_t = np.array(data.GetODE2Coordinates()), np.array(data.GetODE2Coordinates_t())
+        self._newton.look(q, q_t, 0.0)
+        self.contact.start_step()
+        self.contact.evaluate()
+        self.contact.accept()
+        zeros = np.zeros_like(q)
+        multipliers = np.zeros(len(data.GetAECoordinates()))
+        instant = snapshot(self.model.wire, self.contact.motion, 0.0, 0.0)
+        stored = instant.elastic + instant.kinetic
+        energies = replace(Energies(), elastic=instant.elastic, kinetic=instant.kinetic, start=stored, largest_work=stored)
+        return State(0.0, q, q_t, zeros, zeros.copy(), multipliers, self.contact.memory, energies)
+
+    def counts(self) -> dict[str, int]:
+        """Solver counts since the last reset."""
+        return {"solver_steps": self.steps, **self._newton.counts()}

@@ -1,0 +1,162 @@
+"""From a scenario to the model that the engine assembles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gw_exudyn.model.checks import check
+from gw_exudyn.model.contact import ContactLaw
+from gw_exudyn.model.drive import Drive, build_drive
+from gw_exudyn.model.frame import Frame
+from gw_exudyn.model.outline import Outline, build_outline
+from gw_exudyn.model.walls import Tube, Walls, build_walls, tube_polylines, vessel_polylines
+from gw_exudyn.model.wire import DEFAULT_IMPERFECTION, Wire, build_wire, mean_stiffness
+
+if TYPE_CHECKING:
+    from gw_exudyn.scenario import Scenario
+
+Floats = NDArray[np.float64]
+
+TOE = 0.04
+"""Half width of the contact's quadratic onset over the wire's radius."""
+
+SINKING = 0.02
+"""Penetration over the wire's radius that an automatic wall stiffness gives at the estimated peak force."""
+
+DAMPING_TIME = 5e-5
+"""Automatic wall damping over wall stiffness, s, at the penetration SINKING: small beside any step."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """What the engine needs, in the catheter's frame (see Frame). All SI.
+
+    width : m, of the lumen at the exit, from which the wall stiffness is estimated. warnings : sentences for the user.
+    """
+
+    scenario: Scenario
+    frame: Frame
+    wire: Wire
+    walls: Walls
+    law: ContactLaw
+    drive: Drive
+    outline: Outline
+    tube: Tube
+    width: float
+    warnings: tuple[str, ...]
+
+    def vessel_outline(self) -> list[Floats]:
+        """The vessel's walls for drawing, in the scenario's plane: (k, 2) polylines, m."""
+        lines = vessel_polylines(self.outline, self.tube)
+        return [self.frame.points_out(np.vstack([points, points[:1]]) if closed else points) for points, closed in lines]
+
+    def catheter_outline(self) -> list[Floats]:
+        """The catheter's walls for drawing, in the scenario's plane: (2, 2) polylines, m, as long as the wire."""
+        drawn = Tube(self.tube.bore, self.wire.length)
+        return [self.frame.points_out(points) for points in tube_polylines(drawn)]
+
+    def describe(self) -> dict[str, Any]:
+        """Numbers that tell a person what will be run; SI, for `check` and `info`."""
+        scenario = self.scenario
+        return {
+            "wire.diameter": scenario.wire.diameter,
+            "wire.length": self.wire.length,
+            "wire.segments": self.wire.segments,
+            "wire.shortest_segment": float(self.wire.lengths.min()),
+            "wire.longest_segment": float(self.wire.lengths.max()),
+            "wire.bending_stiffness_least": min(min(p.value, p.value_end) for p in scenario.wire.bending_stiffness),
+            "wire.bending_stiffness_largest": max(max(p.value, p.value_end) for p in scenario.wire.bending_stiffness),
+            "wire.imperfection": _or(scenario.wire.imperfection, DEFAULT_IMPERFECTION),
+            "wire.mass": float(self.wire.mass.sum()),
+            "vessel.walls": int(np.count_nonzero(~self.walls.tube)),
+            "vessel.corners": int(np.count_nonzero(~self.walls.corner_tube)),
+            "vessel.width_at_exit": self.width,
+            "catheter.bore": self.tube.bore,
+            "contact.wall_stiffness": self.law.stiffness,
+            "contact.wall_damping": self.law.damping * SINKING * self.wire.radius,
+            "contact.tangential_stiffness": self.law.tangential_stiffness,
+            "contact.onset": self.law.toe,
+            "drive.duration": scenario.drive.duration,
+            "drive.furthest": self.drive.extremes()[1],
+            "solver.steps": int(np.ceil(scenario.drive.duration / scenario.solver.step)),
+            "warnings": list(self.warnings),
+        }
+
+
+def build(scenario: Scenario) -> Model:
+    """The model of a scenario. Raises ScenarioError for what cannot start (see checks)."""
+    frame = Frame(scenario.catheter.exit, scenario.catheter.direction)
+    wire, drive = build_wire(scenario.wire), build_drive(scenario.drive)
+    plane = build_outline(scenario.vessel)
+    outline = Outline(frame.points_in(plane.points), plane.open_edges)
+    pulled_back = -drive.extremes()[0]
+    tube = Tube(scenario.catheter.bore, wire.length + pulled_back + 10 * scenario.catheter.bore)
+    check(scenario, outline, tube, drive)
+    width = max(width_at_exit(outline), scenario.wire.diameter)
+    law = contact_law(scenario, width)
+    contact = scenario.contact
+    walls = build_walls(
+        outline,
+        tube,
+        wire.radius,
+        contact.friction_coefficient,
+        _or(scenario.catheter.friction_coefficient, contact.friction_coefficient),
+        seam_reach=6 * wire.radius,
+    )
+    return Model(scenario, frame, wire, walls, law, drive, outline, tube, width, _warnings(scenario, law, width))
+
+
+def contact_law(scenario: Scenario, width: float) -> ContactLaw:
+    """The contact's numbers: the user's where given, else such that the wire sinks in by SINKING of its radius."""
+    radius, contact = scenario.wire.diameter / 2, scenario.contact
+    stiffness = _or(contact.wall_stiffness, automatic_stiffness(scenario, width))
+    damping = _or(contact.wall_damping, DAMPING_TIME * stiffness)
+    return ContactLaw(
+        stiffness=stiffness,
+        tangential_stiffness=_or(contact.tangential_stiffness, stiffness),
+        damping=damping / (SINKING * radius),
+        toe=TOE * radius,
+    )
+
+
+def automatic_stiffness(scenario: Scenario, width: float) -> float:
+    """Wall stiffness, N/m, at which the estimated peak force sinks the wire in by SINKING of its radius."""
+    return estimated_force(scenario, width) / (SINKING * scenario.wire.diameter / 2)
+
+
+def estimated_force(scenario: Scenario, width: float) -> float:
+    """Force, N, of the wire's distal part in a bend as tight as its lumen is wide: EI / (2 R^2), the push force of a rod in
+    a circular channel of radius R."""
+    stiffness = mean_stiffness(scenario.wire.bending_stiffness, 5 * width)
+    return stiffness / (2 * width**2)
+
+
+def width_at_exit(outline: Outline) -> float:
+    """Width of the lumen, m, across the catheter's axis just past the exit."""
+    a, b = outline.points, np.roll(outline.points, -1, axis=0)
+    x = 1e-6
+    crosses = (a[:, 0] > x) != (b[:, 0] > x)
+    run = np.where(crosses, b[:, 0] - a[:, 0], 1.0)
+    y = (a[:, 1] + (x - a[:, 0]) / run * (b[:, 1] - a[:, 1]))[crosses]
+    above, below = y[y > 0], y[y <= 0]
+    return float(above.min() - below.max()) if len(above) and len(below) else 0.0
+
+
+def _warnings(scenario: Scenario, law: ContactLaw, width: float) -> tuple[str, ...]:
+    automatic = automatic_stiffness(scenario, width)
+    given = scenario.contact.wall_stiffness
+    if given is None or given >= automatic / 5:
+        return ()
+    sinks = estimated_force(scenario, width) / given / (scenario.wire.diameter / 2)
+    return (
+        f"contact.wall_stiffness: {given:.6g} N/m lets the wire sink into the walls by about {100 * sinks:.0f} % of its radius; "
+        f"auto would take {automatic:.3g} N/m",
+    )
+
+
+def _or(value: float | None, otherwise: float) -> float:
+    return otherwise if value is None else value

@@ -1,0 +1,95 @@
+"""What cannot start: found before anything is built, reported all at once with its place in the scenario."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gw_exudyn.errors import Problem, ScenarioError
+from gw_exudyn.model.drive import Drive
+from gw_exudyn.model.outline import Outline
+from gw_exudyn.model.walls import Tube, vessel_polylines
+
+if TYPE_CHECKING:
+    from gw_exudyn.scenario import Scenario
+
+Floats = NDArray[np.float64]
+
+_JUST_AHEAD = 1e-6
+"""How far past the exit, m, the lumen is looked at."""
+
+
+def check(scenario: Scenario, outline: Outline, tube: Tube, drive: Drive) -> None:
+    """Raise ScenarioError with everything that keeps this wire from starting in this vessel.
+
+    outline and tube in the catheter's frame.
+    """
+    problems = _bore(scenario) + _exit(scenario, outline, tube) + _travel(scenario, drive)
+    if problems:
+        raise ScenarioError(problems)
+
+
+def _bore(scenario: Scenario) -> list[Problem]:
+    diameter, bore = scenario.wire.diameter, scenario.catheter.bore
+    if diameter < bore:
+        return []
+    text = (
+        f"{_mm(bore)} is no wider than the wire, {_mm(diameter)}; "
+        "take a wider bore or a thinner wire (wire.diameter, wire.model)"
+    )
+    return [scenario.problem("catheter.bore", text)]
+
+
+def _exit(scenario: Scenario, outline: Outline, tube: Tube) -> list[Problem]:
+    """The exit lies in the lumen, and the wire's tip has room there."""
+    if not contains(outline.points, np.array([_JUST_AHEAD, 0.0])):
+        x, y = scenario.catheter.exit
+        text = (
+            f"({_mm(x)}, {_mm(y)}) is outside the lumen; "
+            "move it inside, or turn catheter.direction so that it points into the vessel"
+        )
+        return [scenario.problem("catheter.exit", text)]
+    room = min((distance(points, closed) for points, closed in vessel_polylines(outline, tube)), default=np.inf)
+    if room >= scenario.wire.diameter / 2:
+        return []
+    text = (
+        f"leaves {_mm(room)} to the nearest wall of the vessel, less than the wire's radius {_mm(scenario.wire.diameter / 2)}; "
+        "move it away from the wall, or take a thinner wire"
+    )
+    return [scenario.problem("catheter.exit", text)]
+
+
+def _travel(scenario: Scenario, drive: Drive) -> list[Problem]:
+    """The proximal end stays behind the exit: the drive holds it on the catheter's axis."""
+    furthest = drive.extremes()[1]
+    if furthest < scenario.wire.length:
+        return []
+    text = (
+        f"pushes {_mm(furthest)} of a wire of {_mm(scenario.wire.length)}: its end would leave the catheter; "
+        "push less far, or take a longer wire (wire.length)"
+    )
+    return [scenario.problem("drive", text)]
+
+
+def contains(polygon: Floats, point: Floats) -> bool:
+    """Whether a point (2,) lies inside a closed polygon (m, 2) (even-odd rule)."""
+    a, b = polygon, np.roll(polygon, -1, axis=0)
+    straddles = (a[:, 1] > point[1]) != (b[:, 1] > point[1])
+    rise = np.where(straddles, b[:, 1] - a[:, 1], 1.0)
+    x = a[:, 0] + (point[1] - a[:, 1]) / rise * (b[:, 0] - a[:, 0])
+    return bool(np.count_nonzero(straddles & (point[0] < x)) % 2)
+
+
+def distance(points: Floats, closed: bool) -> float:
+    """Distance, m, of the frame's origin from a polyline (m, 2)."""
+    a = points if closed else points[:-1]
+    b = np.roll(points, -1, axis=0) if closed else points[1:]
+    d = b - a
+    part = np.clip(-(a * d).sum(axis=1) / (d * d).sum(axis=1), 0.0, 1.0)
+    return float(np.hypot(*(a + part[:, None] * d).T).min())
+
+
+def _mm(value: float) -> str:
+    return f"{value * 1e3:.6g} mm"

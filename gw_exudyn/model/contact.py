@@ -1,0 +1,215 @@
+"""Contact of the whole wire with all walls: forces, tangent, and the memory that friction and carinas need."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gw_exudyn.model.kernel import Kernel, Motion, Pairs
+from gw_exudyn.model.walls import Walls
+from gw_exudyn.model.wire import Wire
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class ContactLaw:
+    """Numbers of the contact law.
+
+    stiffness, tangential_stiffness : N/m, of one contact. damping : N s/m per m of penetration. toe : m, half width of the
+    quadratic onset: a contact begins to push at this gap and is fully stiff at this penetration.
+    """
+
+    stiffness: float
+    tangential_stiffness: float
+    damping: float
+    toe: float
+
+
+def _no_keys() -> Ints:
+    return np.zeros(0, np.int64)
+
+
+def _no_values() -> Floats:
+    return np.zeros(0)
+
+
+@dataclass(frozen=True)
+class ContactMemory:
+    """What contact keeps from one step to the next. Part of the saved state.
+
+    node_keys : (a,), sorted; node pair (body * walls + wall) that carried a force. node_slip : (a,), m, its elastic slip;
+        node_held : (a,), its share of the full stiffness.
+    corner_keys : (b,), sorted; corner pair (body * corners + corner). corner_held : (b,).
+    side : (k,), for each corner +1 or -1, the side of the wire on which it lies, or 0 while it is ahead of the tip. Decided
+        when the tip passes, undone when it comes back.
+    corner_slip : (k,), m, elastic slip of the wire past the corner.
+    """
+
+    side: Floats
+    corner_slip: Floats
+    node_keys: Ints = field(default_factory=_no_keys)
+    node_slip: Floats = field(default_factory=_no_values)
+    node_held: Floats = field(default_factory=_no_values)
+    corner_keys: Ints = field(default_factory=_no_keys)
+    corner_held: Floats = field(default_factory=_no_values)
+
+
+class Contact:
+    """Contact during a run. Body i carries node i, its distal end; arrays over bodies are (n,) or (n, 3).
+
+    One step is: `start_step` at the accepted place (finds the pairs that can touch), any number of `evaluate` at trial
+    places, `accept` at the converged one. `memory` is all that crosses steps.
+    """
+
+    def __init__(self, wire: Wire, walls: Walls, law: ContactLaw) -> None:
+        self.wire, self.walls, self.law = wire, walls, law
+        self.motion = Motion(wire.segments)
+        self._kernel = Kernel(_arrays(wire, walls), _numbers(wire, law))
+        self.nodes, self.corners = Pairs(_ROOM), Pairs(_ROOM)
+        self.memory = ContactMemory(np.zeros(len(walls.corner)), np.zeros(len(walls.corner)))
+        self.reach = 5 * wire.radius
+        self.first = 0
+
+    @property
+    def force(self) -> Floats:
+        """(n, 3): force (N) and moment (N m) about the centre on each body, of the last `evaluate`."""
+        return self._kernel.force.reshape(-1, 3)
+
+    @property
+    def tangent(self) -> Floats:
+        """(9 n,): 3 x 3 blocks by rows; d force/dq, weighted as the last `evaluate` was told."""
+        return self._kernel.tangent
+
+    def start_step(self) -> None:
+        """Find the pairs for a step that starts at the present place, and recall what they carried."""
+        self.motion.start_step()
+        self.first = first_in_vessel(self.motion, self.wire)
+        while not self._kernel.candidates(
+            self.motion, self.memory.side, self.first, self.reach, self.nodes, self.corners
+        ):
+            self.nodes, self.corners = Pairs(4 * self.nodes.capacity), Pairs(4 * self.corners.capacity)
+        memory, nodes, corners = self.memory, self.nodes, self.corners
+        self._node_keys = nodes.body.astype(np.int64) * len(self.walls.length) + nodes.target
+        self._corner_keys = corners.body.astype(np.int64) * len(self.walls.corner) + corners.target
+        nodes.start[:] = _recalled(self._node_keys, memory.node_keys, memory.node_slip)
+        nodes.held[:] = _recalled(self._node_keys, memory.node_keys, memory.node_held)
+        corners.held[:] = _recalled(self._corner_keys, memory.corner_keys, memory.corner_held)
+        corners.start[:] = memory.corner_slip[corners.target]
+
+    def evaluate(self, position: float = 1.0, velocity: float = 0.0, *, predicted: bool = False) -> None:
+        """Forces and tangent at the present place; tangent = position * d/dq + velocity * d/dq_t.
+
+        predicted : the place is the first guess of a step (see contact_law in contact.c).
+        """
+        self.motion.struct.predicted = int(predicted)
+        self._kernel.evaluate(self.motion, self.nodes, self.corners, position, velocity)
+
+    def accept(self) -> None:
+        """Take the present place, just evaluated, as the end of the step: keep slips, stiffness shares and sides."""
+        nodes, corners, walls = self.nodes, self.corners, self.walls
+        stiffness = self.law.stiffness
+        touching = (nodes.normal > 0) & (nodes.weight > 0)
+        meeting = (corners.normal > 0) & (corners.weight > 0)
+        share = corners.weight * meeting
+        total = np.bincount(corners.target, share, len(walls.corner))
+        slip = np.bincount(corners.target, share * corners.elastic, len(walls.corner))
+        self.memory = ContactMemory(
+            side=self._passed(),
+            corner_slip=np.where(total > 0, slip / np.where(total > 0, total, 1.0), 0.0),
+            node_keys=self._node_keys[touching],
+            node_slip=nodes.elastic[touching],
+            node_held=nodes.normal_stiffness[touching] / nodes.weight[touching] / stiffness,
+            corner_keys=self._corner_keys[meeting],
+            corner_held=corners.normal_stiffness[meeting] / corners.weight[meeting] / stiffness,
+        )
+
+    def _passed(self) -> Floats:
+        """(k,): the sides after the present place."""
+        side = self.memory.side
+        if not len(side):
+            return side
+        body, ahead, offset = self._kernel.nearest(self.motion, first_in_vessel(self.motion, self.wire), len(side))
+        fresh = np.where(offset < 0, -1.0, 1.0)
+        kept: Floats = np.where((ahead == 1) | (body < 0), 0.0, np.where(side == 0, fresh, side))
+        return kept
+
+    def deepest(self) -> tuple[float, str]:
+        """Largest penetration, m (0 when nothing is inside a wall), of the last `evaluate`, and where, in words."""
+        worst, place = 0.0, ""
+        for pairs, what in ((self.nodes, "wall"), (self.corners, "corner")):
+            inside = np.where(pairs.weight > _HALF_WAY, -pairs.gap, -np.inf)
+            if len(inside) and inside.max() > worst:
+                i = int(inside.argmax())
+                worst, place = float(inside[i]), f"segment {pairs.body[i]} at {what} {pairs.target[i]}"
+        return worst, place
+
+    def is_unstable(self, joint_stiffness: Floats) -> bool:
+        """The last `evaluate` found a balance that is no minimum: a compressed wire that has yet to choose a side.
+
+        joint_stiffness : (n,), N m/rad, of the joint proximal to each body, the damper's share of the step included.
+        """
+        return self._kernel.unstable(self.motion, self.nodes, self.corners, joint_stiffness) > 0
+
+    def crossing(self) -> tuple[int, int] | None:
+        """(body, wall) where the wire's axis crosses a wall of the vessel at the present place, or None."""
+        return self._kernel.crossing(self.motion, first_in_vessel(self.motion, self.wire))
+
+
+_ROOM = 256
+_HALF_WAY = 0.5
+"""Weight from which a pair is the one that counts where two share a contact."""
+
+
+def first_in_vessel(motion: Motion, wire: Wire) -> int:
+    """The first body whose distal end is past the catheter's exit; all from there on are in the vessel."""
+    ahead = motion.q[:, 0] + wire.lengths / 2 * motion.c >= -1e-12
+    return int(ahead.argmax()) if ahead.any() else len(ahead)
+
+
+def _recalled(keys: Ints, known: Ints, values: Floats) -> Floats:
+    """(len(keys),): the remembered value of each key, 0 for one that is not known."""
+    if not len(known):
+        return np.zeros(len(keys))
+    place = np.minimum(np.searchsorted(known, keys), len(known) - 1)
+    found: Floats = np.where(known[place] == keys, values[place], 0.0)
+    return found
+
+
+def _numbers(wire: Wire, law: ContactLaw) -> dict[str, float]:
+    return {
+        "radius": wire.radius,
+        "stiffness": law.stiffness,
+        "damping": law.damping,
+        "toe": law.toe,
+        "tangential_stiffness": law.tangential_stiffness,
+    }
+
+
+def _arrays(wire: Wire, walls: Walls) -> dict[str, NDArray[np.generic]]:
+    half = wire.lengths / 2
+    blend = np.minimum(wire.radius / 2, half / 2)
+    blend[:-1] = np.minimum(blend[:-1], blend[1:])
+    return {
+        "half_length": half,
+        "joint_blend": blend,
+        "wall_x": walls.start[:, 0],
+        "wall_y": walls.start[:, 1],
+        "wall_tx": walls.tangent[:, 0],
+        "wall_ty": walls.tangent[:, 1],
+        "wall_length": walls.length,
+        "wall_lo": walls.lo,
+        "wall_hi": walls.hi,
+        "wall_fade_lo": walls.fade_lo,
+        "wall_fade_hi": walls.fade_hi,
+        "wall_friction": walls.friction,
+        "wall_sharp": walls.sharp,
+        "wall_tube": walls.tube,
+        "corner_x": walls.corner[:, 0],
+        "corner_y": walls.corner[:, 1],
+        "corner_friction": walls.corner_friction,
+        "corner_tube": walls.corner_tube,
+    }

@@ -1,0 +1,178 @@
+"""Energies of a run, each from its own forces; what is left over is the error, and nothing is made to fit.
+
+At the end of a step the forces on every segment balance. Their work over the step, taken with the forces at its end,
+therefore balances too; the terms below are that balance, written with the energies that a person asks for. The
+integrator's own loss (forces at the end instead of along the step, finite turns of rigid segments) is worked out term by
+term as `numerical_loss`; in a snap-through that is skipped in one step it is the energy set free.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gw_exudyn.model.contact import Contact
+from gw_exudyn.model.kernel import Motion, Pairs
+from gw_exudyn.model.wire import Wire
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Energies:
+    """J. State: elastic (joints), wall (normal and tangential springs), kinetic. Sums since the start: insertion_work (by the
+    drive), friction_loss, damping_loss (joints and walls), numerical_loss. `largest_work`: the largest of the work and the stored energies so far.
+    """
+
+    elastic: float = 0.0
+    wall: float = 0.0
+    kinetic: float = 0.0
+    insertion_work: float = 0.0
+    friction_loss: float = 0.0
+    damping_loss: float = 0.0
+    numerical_loss: float = 0.0
+    start: float = 0.0
+    largest_work: float = 0.0
+
+    @property
+    def error(self) -> float:
+        """What does not add up, J."""
+        stored = self.elastic + self.wall + self.kinetic - self.start
+        return self.insertion_work - stored - self.friction_loss - self.damping_loss - self.numerical_loss
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """What the balance of the next step needs of this instant.
+
+    q, v : (n, 3), place and rate of the segments. push : N. travel : m. elastic, kinetic : J.
+    """
+
+    q: Floats
+    v: Floats
+    push: float
+    travel: float
+    elastic: float
+    kinetic: float
+
+
+def snapshot(wire: Wire, motion: Motion, push: float, travel: float) -> Snapshot:
+    """This instant."""
+    q, v = motion.q.copy(), motion.v.copy()
+    bend = relative_angles(q[:, 2]) - wire.rest_angle
+    elastic = 0.5 * float(wire.joint_stiffness @ bend**2)
+    kinetic = 0.5 * float(wire.mass @ (v[:, 0] ** 2 + v[:, 1] ** 2) + wire.inertia @ v[:, 2] ** 2)
+    return Snapshot(q, v, push, travel, elastic, kinetic)
+
+
+def relative_angles(angle: Floats) -> Floats:
+    """(n,), rad: of each segment against the one before; the first against the catheter."""
+    return np.diff(angle, prepend=0.0)
+
+
+def joint_moments(wire: Wire, motion: Motion) -> Floats:
+    """(n,), N m: spring and damper of each joint, on its distal segment counted negative (they resist the bend)."""
+    bend = relative_angles(motion.q[:, 2]) - wire.rest_angle
+    moments: Floats = wire.joint_stiffness * bend + wire.joint_damping * relative_angles(motion.v[:, 2])
+    return moments
+
+
+@dataclass(frozen=True)
+class WallStart:
+    """Gaps (m) and stored energies (J) of the pairs at the start of a step, in the order of the pair lists."""
+
+    node_gap: Floats
+    corner_gap: Floats
+    energy: float
+
+
+def stored_in_walls(contact: Contact) -> float:
+    """J, in the normal and tangential springs of all pairs, at the last `evaluate`."""
+    return float(contact.nodes.energy.sum() + contact.corners.energy.sum())
+
+
+def wall_start(contact: Contact) -> WallStart:
+    """At the start of a step, right after the pairs were found and evaluated there."""
+    return WallStart(contact.nodes.gap.copy(), contact.corners.gap.copy(), stored_in_walls(contact))
+
+
+def advanced(
+    before: Energies, contact: Contact, start: WallStart, old: Snapshot, new: Snapshot, acceleration: Floats, step: float
+) -> Energies:
+    """The energies after a step. `contact` is evaluated at its end; acceleration : (n, 3) at its end; step : s."""
+    wire = contact.wire
+    moved, travelled = new.q - old.q, new.travel - old.travel
+    turned = relative_angles(moved[:, 2])
+    bend = relative_angles(new.q[:, 2]) - wire.rest_angle
+    friction, wall_damping = _wall_losses(contact, start)
+    wall = stored_in_walls(contact)
+    inertia = np.column_stack([wire.mass, wire.mass, wire.inertia]) * acceleration
+    resisted = wire.joint_damping * relative_angles(new.v[:, 2])
+    damping = float(wire.joint_damping @ turned**2) / step
+    work = 0.5 * (old.push + new.push) * travelled
+    # Work with the forces at the step's end, less what each force really stored or took.
+    numerical = (
+        0.5 * (old.push - new.push) * travelled
+        + float((wire.joint_stiffness * bend) @ turned) - (new.elastic - old.elastic)
+        + float(resisted @ turned) - damping
+        + float((inertia * moved).sum()) - (new.kinetic - old.kinetic)
+        - float((contact.force * moved).sum()) - (wall - start.energy) - friction - wall_damping
+        - _finite_turns(contact, old, new, inertia)
+    )  # fmt: skip
+    stored = new.elastic + wall + new.kinetic
+    return Energies(
+        elastic=new.elastic,
+        wall=wall,
+        kinetic=new.kinetic,
+        insertion_work=before.insertion_work + work,
+        friction_loss=before.friction_loss + friction,
+        damping_loss=before.damping_loss + damping + wall_damping,
+        numerical_loss=before.numerical_loss + numerical,
+        start=before.start,
+        largest_work=max(before.largest_work, abs(before.insertion_work + work), stored),
+    )
+
+
+def _wall_losses(contact: Contact, start: WallStart) -> tuple[float, float]:
+    """(friction loss, wall damping loss) over the step, J, from the pairs.
+
+    Sliding is the slip that the tangential spring did not take up; the force opposes it, so the loss is never negative.
+    """
+    law = contact.law
+    friction = damping = 0.0
+    for pairs, gap in ((contact.nodes, start.node_gap), (contact.corners, start.corner_gap)):
+        slid = pairs.slip - (pairs.elastic - pairs.start)
+        friction -= float((pairs.weight * pairs.tangential * slid)[pairs.normal > 0].sum())
+        static = _static_force(pairs, law.toe, law.stiffness)
+        damping += float((pairs.weight * (static - pairs.normal) * (pairs.gap - gap)).sum())
+    return friction, damping
+
+
+def _static_force(pairs: Pairs, toe: float, stiffness: float) -> Floats:
+    """(p,), N: the normal force without its damper."""
+    u = np.clip(toe - pairs.gap, 0.0, 2 * toe)
+    force: Floats = stiffness * (u**2 / (4 * toe) + np.maximum(-pairs.gap - toe, 0.0))
+    return np.where(pairs.normal > 0, force, 0.0)
+
+
+def _finite_turns(contact: Contact, old: Snapshot, new: Snapshot, inertia: Floats) -> float:
+    """J: work of the joints' forces because a rigid segment's end moves on an arc, not along the tangent at its end place.
+
+    The force in joint i is what the distal part needs: its inertia less its contact forces.
+    """
+    wire = contact.wire
+    needed = (inertia - contact.force)[:, :2]
+    joint = np.cumsum(needed[::-1], axis=0)[::-1]
+    half = (wire.lengths / 2)[:, None]
+    angle0, angle1 = old.q[:, 2], new.q[:, 2]
+    direction0 = np.column_stack([np.cos(angle0), np.sin(angle0)])
+    direction1 = np.column_stack([np.cos(angle1), np.sin(angle1)])
+    tangent = np.column_stack([-direction1[:, 1], direction1[:, 0]]) * (angle1 - angle0)[:, None]
+    arc = half * (direction1 - direction0 - tangent)
+    gap = arc.copy()
+    gap[1:] += arc[:-1]
+    return float((joint * gap).sum())
+
+

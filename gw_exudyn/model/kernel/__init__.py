@@ -1,0 +1,256 @@
+"""The compiled contact kernel: one small shared object a platform, called through ctypes.
+
+A run of 20 segments spends most of its time in contact calls of a few pairs each, where numpy's overhead per operation
+is the cost: about 200 microseconds a call against 3 here. The library needs no C library and is loaded in well
+under a millisecond. `contact.c` says what is computed; `build.py` makes the libraries.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import platform
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gw_exudyn.errors import SolverError
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int32]
+
+_DOUBLES = ctypes.POINTER(ctypes.c_double)
+_INTS = ctypes.POINTER(ctypes.c_int)
+
+LIBRARY_FOLDER = Path(__file__).parent / "lib"
+
+
+def library_name(system: str, machine: str) -> str:
+    """File name of the library for an operating system and a machine as `platform` names them."""
+    machine = {"amd64": "x86_64"}.get(machine.lower(), machine.lower())
+    name, suffix = {"linux": ("linux", "so"), "windows": ("windows", "dll"), "darwin": ("macos", "dylib")}.get(
+        system.lower(), (system.lower(), "so")
+    )
+    return f"contact-{name}-{machine}.{suffix}"
+
+
+class System(ctypes.Structure):
+    """`System` of contact.c."""
+
+    _fields_ = [  # noqa: RUF012  # ctypes wants a plain list
+        *((name, ctypes.c_int) for name in ("bodies", "walls", "corners")),
+        *((name, ctypes.c_double) for name in ("radius", "stiffness", "damping", "toe", "tangential_stiffness")),
+        *(
+            (name, _DOUBLES)
+            for name in (
+                "half_length",
+                "joint_blend",
+                "wall_x",
+                "wall_y",
+                "wall_tx",
+                "wall_ty",
+                "wall_length",
+                "wall_lo",
+                "wall_hi",
+                "wall_fade_lo",
+                "wall_fade_hi",
+                "wall_friction",
+            )
+        ),
+        *((name, _INTS) for name in ("wall_sharp", "wall_tube")),
+        *((name, _DOUBLES) for name in ("corner_x", "corner_y", "corner_friction")),
+        ("corner_tube", _INTS),
+    ]
+
+
+class _Pairs(ctypes.Structure):
+    _fields_ = [  # noqa: RUF012
+        *((name, ctypes.c_int) for name in ("capacity", "count")),
+        *((name, _INTS) for name in ("body", "target")),
+        *(
+            (name, _DOUBLES)
+            for name in (
+                "side",
+                "start",
+                "held",
+                "gap",
+                "normal",
+                "tangential",
+                "weight",
+                "energy",
+                "slip",
+                "elastic",
+                "normal_stiffness",
+                "tangential_stiffness",
+            )
+        ),
+    ]
+
+
+class _Motion(ctypes.Structure):
+    _fields_ = [  # noqa: RUF012
+        *((name, _DOUBLES) for name in ("q", "c", "s", "v", "q0", "c0", "s0")),
+        ("predicted", ctypes.c_int),
+    ]
+
+
+def _pointer(array: NDArray[Any]) -> Any:
+    return array.ctypes.data_as(_INTS if array.dtype == np.int32 else _DOUBLES)
+
+
+class Pairs:
+    """A list of pairs: arrays of a fixed capacity, of which the first `count` are valid. Attributes as in contact.c."""
+
+    body: Ints
+    target: Ints
+    side: Floats
+    start: Floats
+    held: Floats
+    gap: Floats
+    normal: Floats
+    tangential: Floats
+    weight: Floats
+    energy: Floats
+    slip: Floats
+    elastic: Floats
+    normal_stiffness: Floats
+    tangential_stiffness: Floats
+
+    def __init__(self, capacity: int) -> None:
+        names = [str(name) for name, _ in _Pairs._fields_[2:]]
+        self._arrays: dict[str, NDArray[Any]] = {
+            name: np.zeros(capacity, np.int32 if name in ("body", "target") else np.float64) for name in names
+        }
+        self.struct = _Pairs(capacity, 0, *(_pointer(array) for array in self._arrays.values()))
+        self.address = ctypes.addressof(self.struct)
+
+    @property
+    def count(self) -> int:
+        """Number of pairs in the list."""
+        return int(self.struct.count)
+
+    @property
+    def capacity(self) -> int:
+        """Largest number of pairs that fits."""
+        return int(self.struct.capacity)
+
+    def __getattr__(self, name: str) -> NDArray[Any]:
+        try:
+            return self._arrays[name][: self.struct.count]
+        except KeyError:
+            raise AttributeError(name) from None
+
+
+class Motion:
+    """Motion of the bodies, in arrays that the kernel reads in place.
+
+    q : (n, 3), place of the centre (m) and angle (rad). v : (n, 3), its rate. q0 : (n, 3), at the start of the step.
+    c, s, c0, s0 : (n,), cosine and sine of the angles of q and q0.
+    """
+
+    def __init__(self, bodies: int) -> None:
+        self.q, self.v, self.q0 = (np.zeros((bodies, 3)) for _ in range(3))
+        self.c, self.s, self.c0, self.s0 = (np.zeros(bodies) for _ in range(4))
+        self.struct = _Motion(*(_pointer(a) for a in (self.q, self.c, self.s, self.v, self.q0, self.c0, self.s0)), 0)
+        self.address = ctypes.addressof(self.struct)
+
+    def set(self, q: Floats, v: Floats) -> None:
+        """Take over a place and a rate, both (n, 3)."""
+        self.q[:] = q
+        self.v[:] = v
+        np.cos(self.q[:, 2], out=self.c)
+        np.sin(self.q[:, 2], out=self.s)
+
+    def start_step(self) -> None:
+        """Make the present place that of the step's start."""
+        self.q0[:] = self.q
+        self.c0[:] = self.c
+        self.s0[:] = self.s
+
+
+class Kernel:
+    """The functions of the library, on one system. `arrays` by the names of `System`; they are kept and read in place."""
+
+    def __init__(self, arrays: dict[str, NDArray[Any]], numbers: dict[str, float]) -> None:
+        integer = ("wall_sharp", "wall_tube", "corner_tube")
+        self._arrays = {
+            name: np.ascontiguousarray(array, np.int32 if name in integer else np.float64) for name, array in arrays.items()
+        }
+        counts = {
+            "bodies": len(arrays["half_length"]),
+            "walls": len(arrays["wall_x"]),
+            "corners": len(arrays["corner_x"]),
+        }
+        pointers = {name: _pointer(array) for name, array in self._arrays.items()}
+        self._system = System(**counts, **numbers, **pointers)
+        self._address = ctypes.addressof(self._system)
+        self._library = _load()
+        self.bodies = counts["bodies"]
+        self.force = np.zeros(3 * self.bodies)
+        self.tangent = np.zeros(9 * self.bodies)
+        self._outputs = self.force.ctypes.data, self.tangent.ctypes.data
+
+    def evaluate(self, motion: Motion, nodes: Pairs, corners: Pairs, position: float, velocity: float) -> None:
+        """Fill `force` (3n) and `tangent` (9n, 3 x 3 blocks by rows): `position` d force/dq + `velocity` d force/dq_t."""
+        self._library.gw_contact_evaluate(
+            self._address, motion.address, nodes.address, corners.address, position, velocity, *self._outputs
+        )
+
+    def candidates(self, motion: Motion, sides: Floats, first: int, reach: float, nodes: Pairs, corners: Pairs) -> bool:
+        """Fill the lists with the pairs that can touch within `reach` (m) of travel; False when a list is too short."""
+        return bool(
+            self._library.gw_contact_candidates(
+                self._address, motion.address, sides.ctypes.data, first, reach, nodes.address, corners.address
+            )
+        )
+
+    def nearest(self, motion: Motion, first: int, corners: int) -> tuple[Ints, Ints, Floats]:
+        """For each corner the nearest body (-1: none), 1 where the corner lies ahead of the tip, and its signed offset, m."""
+        body, ahead, offset = np.full(corners, -1, np.int32), np.zeros(corners, np.int32), np.zeros(corners)
+        self._library.gw_contact_nearest(
+            self._address, motion.address, first, body.ctypes.data, ahead.ctypes.data, offset.ctypes.data
+        )
+        return body, ahead, offset
+
+    def unstable(self, motion: Motion, nodes: Pairs, corners: Pairs, joint_stiffness: Floats) -> int:
+        """Number of directions in which the step's incremental potential has a maximum at the present place."""
+        return int(
+            self._library.gw_contact_unstable(
+                self._address, motion.address, nodes.address, corners.address, joint_stiffness.ctypes.data
+            )
+        )
+
+    def crossing(self, motion: Motion, first: int) -> tuple[int, int] | None:
+        """(body, wall) of the first wire segment that crosses a wall of the vessel, or None."""
+        wall = ctypes.c_int(-1)
+        body = int(self._library.gw_contact_crossing(self._address, motion.address, first, ctypes.byref(wall)))
+        return None if body < 0 else (body, wall.value)
+
+
+@cache
+def _load() -> ctypes.CDLL:
+    """The library for this machine. Raises SolverError where there is none, or it cannot be loaded."""
+    path = LIBRARY_FOLDER / library_name(platform.system(), platform.machine())
+    if not path.exists():
+        raise SolverError(
+            f"there is no contact kernel for this machine ({path.name}); with the package ziglang or a C compiler at hand, "
+            "python -m gw_exudyn.model.kernel.build makes it"
+        )
+    try:
+        library = ctypes.CDLL(str(path))
+    except OSError as error:
+        raise SolverError(f"the contact kernel {path} cannot be loaded ({error}); install the package again") from error
+    pointer, real, integer = ctypes.c_void_p, ctypes.c_double, ctypes.c_int
+    signatures: dict[str, tuple[list[Any], Any]] = {
+        "gw_contact_evaluate": ([pointer] * 4 + [real] * 2 + [pointer] * 2, None),
+        "gw_contact_candidates": ([pointer] * 3 + [integer, real] + [pointer] * 2, integer),
+        "gw_contact_nearest": ([pointer] * 2 + [integer] + [pointer] * 3, None),
+        "gw_contact_unstable": ([pointer] * 5, integer),
+        "gw_contact_crossing": ([pointer] * 2 + [integer, pointer], integer),
+    }
+    for name, (arguments, result) in signatures.items():
+        function = getattr(library, name)
+        function.argtypes, function.restype = arguments, result
+    return library

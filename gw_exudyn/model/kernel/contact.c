@@ -1,0 +1,419 @@
+/* Contact of a chain of rigid segments with polyline walls: forces, tangent blocks, candidate pairs.
+ *
+ * Plain C99 without the C library (the sines and cosines come from the caller), so that one small shared
+ * object a platform serves every interpreter. Units: SI. Frame: the plane of the scenario, turned so that the
+ * catheter points along +x. Body i carries (x, y, angle) of its centre; e = (cos, sin) points to the tip,
+ * n = (-sin, cos) to its left. Node i is the distal end of body i; a wall's lumen lies on its left.
+ *
+ * Two kinds of pair, each counted once:
+ *   node disc   against wall segment: fades towards wall ends that point into the lumen, where the corner takes over;
+ *   wall corner against wire segment: shared between neighbours by weights that sum to one about the joint's bisector,
+ *                                     with the round disc beyond a joint and at the tip.
+ * Normal force: penalty with a quadratic toe and a damper that grows with penetration, never pulling [Sharei et al.
+ * 2019, Eqs. 4-5; damper as in Hunt and Crossley 1975]. Tangential force: Coulomb with an elastic tangential spring and
+ * return mapping, so that a stuck contact does not creep at all [in place of Eq. 6].
+ * Both act on the wire's axis (thin wire: no moment r*f), and slip is that of the axis, so friction cannot add energy.
+ */
+
+#if defined(_WIN32)
+#define EXPORT __declspec(dllexport)
+#else
+#define EXPORT __attribute__((visibility("default")))
+#endif
+
+typedef struct {
+    int bodies, walls, corners;
+    double radius, stiffness, damping, toe, tangential_stiffness;
+    const double *half_length;                                 /* (bodies) */
+    const double *joint_blend;                                 /* (bodies): half width of the hand-over at the distal joint */
+    const double *wall_x, *wall_y, *wall_tx, *wall_ty;         /* (walls): start and unit tangent */
+    const double *wall_length, *wall_lo, *wall_hi;             /* (walls): length, where the weight has fallen to zero */
+    const double *wall_fade_lo, *wall_fade_hi;                 /* (walls): width over which it falls */
+    const double *wall_friction;                               /* (walls) */
+    const int *wall_sharp;                                     /* (walls): bit 0: start points into the lumen, bit 1: end does */
+    const int *wall_tube;                                      /* (walls): 1 catheter, 0 vessel */
+    const double *corner_x, *corner_y, *corner_friction;       /* (corners) */
+    const int *corner_tube;                                    /* (corners) */
+} System;
+
+/* Per pair, in and out. Node pairs: target = wall. Corner pairs: target = corner. */
+typedef struct {
+    int capacity, count;
+    int *body, *target;
+    double *side;                                              /* corner pairs: +1 left, -1 right, 0 not passed yet */
+    double *start;                                             /* elastic slip at the start of the step, m */
+    double *held;                                              /* share of the full stiffness at the start of the step, 0 to 1 */
+    double *gap, *normal, *tangential, *weight, *energy;       /* results: m, N, N, -, J */
+    double *slip, *elastic;                                    /* results, m: slip since the start of the step; elastic slip now */
+    double *normal_stiffness, *tangential_stiffness;           /* results: N/m, weighted, without damping */
+} Pairs;
+
+/* Motion of the bodies. c, s: cosine and sine of the angle. c0, s0 and x0, y0: at the start of the step. */
+typedef struct {
+    const double *q, *c, *s, *v, *q0, *c0, *s0;
+    int predicted;                                             /* 1: a step's first guess; its tangent keeps the held stiffness */
+} Motion;
+
+static double square_root(double x) { return __builtin_sqrt(x); }
+static double magnitude(double x) { return x < 0 ? -x : x; }
+static double clamp(double x, double lo, double hi) { return x < lo ? lo : (x > hi ? hi : x); }
+
+/* Smooth step from 0 at x <= 0 to 1 at x >= 1, and its derivative. */
+static double smooth(double x) { x = clamp(x, 0, 1); return x * x * (3 - 2 * x); }
+static double smooth_slope(double x) { x = clamp(x, 0, 1); return 6 * x * (1 - x); }
+
+typedef struct {
+    double normal, tangential;      /* N; tangential: on the wire, along increasing slip (so it opposes slip) */
+    double d_gap, d_rate;           /* d normal / d gap, d normal / d rate */
+    double d_slip, d_normal;        /* d tangential / d slip, d tangential / d normal */
+    double elastic;                 /* m, the slip that the tangential spring keeps */
+    double energy;                  /* J, in the normal and the tangential spring */
+} Law;
+
+/* `held`: least share of the stiffness that the tangent keeps. The first guess of a step may lift a wire off the walls that
+ * carry it; without their stiffness a compressed wire has next to none, and Newton's first step goes far astray. */
+static Law contact_law(const System *sys, double gap, double rate, double elastic_slip, double friction, double held)
+{
+    Law law;
+    const double toe = sys->toe, u = clamp(toe - gap, 0, 2 * toe), deep = gap < -toe ? -gap - toe : 0;
+    const double depth = u * u / (4 * toe) + deep, slope = u / (2 * toe);
+    const double modulus = sys->stiffness - sys->damping * rate;
+    const int pushing = modulus > 0;
+    law.normal = pushing ? depth * modulus : 0;
+    law.d_gap = pushing ? -(slope > held ? slope : held) * modulus : 0;
+    law.d_rate = pushing ? -depth * sys->damping : 0;
+    law.energy = sys->stiffness * (u * u * u / (12 * toe) + deep * (toe + 0.5 * deep));
+
+    /* A spring that softens from 0.9 of the limit on and is at the limit at 1.1: force and stiffness are continuous. */
+    const double soft = 0.1;
+    const double limit = friction * law.normal, modulus_t = sys->tangential_stiffness;
+    law.tangential = law.d_slip = law.d_normal = law.elastic = 0;
+    if (limit > 0) {
+        const double sign = elastic_slip < 0 ? -1 : 1, ratio = magnitude(elastic_slip) * modulus_t / limit;
+        const double kept = ratio < 1 + soft ? ratio : 1 + soft, over = kept > 1 - soft ? kept - (1 - soft) : 0;
+        const double share = kept - over * over / (4 * soft), slope_t = ratio < 1 + soft ? 1 - over / (2 * soft) : 0;
+        law.elastic = sign * kept * limit / modulus_t;
+        law.tangential = -sign * limit * share;
+        law.d_slip = -modulus_t * slope_t;
+        law.d_normal = -sign * friction * (share - ratio * slope_t);
+        law.energy += limit * limit / modulus_t * (0.5 * kept * kept - over * over * over / (12 * soft));
+    }
+    return law;
+}
+
+static void store(Pairs *p, int i, double gap, const Law *law, double weight, double slip)
+{
+    p->gap[i] = gap; p->normal[i] = law->normal; p->tangential[i] = law->tangential;
+    p->weight[i] = weight; p->energy[i] = weight * law->energy;
+    p->slip[i] = slip; p->elastic[i] = law->elastic;
+    p->normal_stiffness[i] = -weight * law->d_gap; p->tangential_stiffness[i] = -weight * law->d_slip;
+}
+
+/* force (3) += , tangent (9) += derivative of the force: position part times fq, velocity part times fv. */
+static void node_pair(const System *sys, const Motion *m, Pairs *p, int i, double fq, double fv, double *force, double *tangent)
+{
+    const int b = p->body[i], w = p->target[i];
+    const double *q = m->q + 3 * b, *v = m->v + 3 * b, *q0 = m->q0 + 3 * b, h = sys->half_length[b];
+    const double ax = h * m->c[b], ay = h * m->s[b];                            /* arm from the centre to the node */
+    const double tx = sys->wall_tx[w], ty = sys->wall_ty[w], nx = -ty, ny = tx;
+    const double rx = q[0] + ax - sys->wall_x[w], ry = q[1] + ay - sys->wall_y[w];
+    const double gap = nx * rx + ny * ry - sys->radius, along = tx * rx + ty * ry;
+    const double mx = q[0] + ax - q0[0] - h * m->c0[b], my = q[1] + ay - q0[1] - h * m->s0[b];
+    const double slip = tx * mx + ty * my;
+    const double a = (along - sys->wall_lo[w]) / sys->wall_fade_lo[w], z = (sys->wall_hi[w] - along) / sys->wall_fade_hi[w];
+    const double weight = smooth(a) * smooth(z);
+    Law law = {0, 0, 0, 0, 0, 0, 0, 0};
+    const double held = m->predicted ? p->held[i] : 0;
+    if ((gap >= sys->toe && held == 0) || weight <= 0) { store(p, i, gap, &law, weight, slip); return; }
+    const double rate = nx * (v[0] - ay * v[2]) + ny * (v[1] + ax * v[2]);
+    law = contact_law(sys, gap, rate, p->start[i] + slip, sys->wall_friction[w], held);
+    store(p, i, gap, &law, weight, slip);
+
+    const double G[3] = {nx, ny, -nx * ay + ny * ax}, T[3] = {tx, ty, -tx * ay + ty * ax};   /* of gap and of slip */
+    const double d_weight = smooth_slope(a) / sys->wall_fade_lo[w] * smooth(z) - smooth(a) * smooth_slope(z) / sys->wall_fade_hi[w];
+    const double d_normal = law.d_gap * fq + law.d_rate * fv;
+    double F[3];
+    for (int r = 0; r < 3; r++) {
+        F[r] = law.normal * G[r] + law.tangential * T[r];
+        force[r] += weight * F[r];
+        for (int c = 0; c < 3; c++)
+            tangent[3 * r + c] += weight * (d_normal * G[c] * (G[r] + law.d_normal * T[r]) + law.d_slip * fq * T[r] * T[c])
+                                + d_weight * fq * F[r] * T[c];
+    }
+    tangent[8] -= weight * fq * (law.normal * (nx * ax + ny * ay) + law.tangential * (tx * ax + ty * ay));
+}
+
+/* Place of a corner in the frame of a body, and what the pair needs of it. */
+typedef struct {
+    double x, y;                    /* along e and n, from the body's centre */
+    double over;                    /* how far past the segment's end (0 beside it) */
+    double ux, uy;                  /* direction in which the gap grows with the corner's place */
+    double distance, curvature;     /* from the axis, signed; 1/distance where the corner faces a round end */
+} Place;
+
+static Place corner_place(const System *sys, const Motion *m, int b, double cx, double cy, double side)
+{
+    Place pl;
+    const double dx = cx - m->q[3 * b], dy = cy - m->q[3 * b + 1], h = sys->half_length[b];
+    pl.x = dx * m->c[b] + dy * m->s[b];
+    pl.y = -dx * m->s[b] + dy * m->c[b];
+    pl.over = pl.x - clamp(pl.x, -h, h);
+    if (side == 0) side = pl.y < 0 ? -1 : 1;
+    const int ahead = b == sys->bodies - 1 && pl.over > 0;
+    if (pl.over != 0 && (side * pl.y > 0 || ahead)) {
+        pl.distance = square_root(pl.over * pl.over + pl.y * pl.y);
+        pl.curvature = 1 / pl.distance;
+        pl.ux = pl.over * pl.curvature;
+        pl.uy = pl.y * pl.curvature;
+    } else {
+        pl.distance = side * pl.y;
+        pl.curvature = 0;
+        pl.ux = 0;
+        pl.uy = side;
+    }
+    return pl;
+}
+
+/* Weight of body b at its distal (end = +1) or proximal (-1) joint with body o; gradient in the body's frame. */
+static double joint_weight(const Motion *m, int b, int o, double h, double blend, int end, const Place *pl, double *gradient)
+{
+    double ex = m->c[b] + m->c[o], ey = m->s[b] + m->s[o];
+    const double norm = square_root(ex * ex + ey * ey) + 1e-300;
+    ex /= norm; ey /= norm;
+    const double ca = ex * m->c[b] + ey * m->s[b], sa = -ex * m->s[b] + ey * m->c[b];   /* bisector seen from the body */
+    const double rx = pl->x - end * h, zeta = rx * ca + pl->y * sa;
+    const double argument = 0.5 - end * zeta / (2 * blend), slope = -end * smooth_slope(argument) / (2 * blend);
+    gradient[0] = -slope * ca;
+    gradient[1] = -slope * sa;
+    gradient[2] = slope * (-end * h * sa + 0.5 * (-rx * sa + pl->y * ca));
+    return smooth(argument);
+}
+
+static void corner_pair(const System *sys, const Motion *m, Pairs *p, int i, double fq, double fv, double *force, double *tangent)
+{
+    const int b = p->body[i], k = p->target[i], last = sys->bodies - 1;
+    const double *q = m->q + 3 * b, *v = m->v + 3 * b, *q0 = m->q0 + 3 * b, cb = m->c[b], sb = m->s[b];
+    const Place pl = corner_place(sys, m, b, sys->corner_x[k], sys->corner_y[k], p->side[i]);
+    const double gap = pl.distance - sys->radius;
+    const double mx = q[0] - q0[0], my = q[1] - q0[1], slip = mx * cb + my * sb, across = -mx * sb + my * cb;
+    double far[3] = {0, 0, 0}, near[3] = {0, 0, 0}, w_far = 1, w_near = 1;
+    if (b < last) w_far = joint_weight(m, b, b + 1, sys->half_length[b], sys->joint_blend[b], 1, &pl, far);
+    if (b > 0) w_near = joint_weight(m, b, b - 1, sys->half_length[b], sys->joint_blend[b - 1], -1, &pl, near);
+    const double weight = w_far * w_near;
+    Law law = {0, 0, 0, 0, 0, 0, 0, 0};
+    const double held = m->predicted ? p->held[i] : 0;
+    if ((gap >= sys->toe && held == 0) || weight <= 0) { store(p, i, gap, &law, weight, slip); return; }
+
+    const double G[3] = {-pl.ux, -pl.uy, pl.ux * pl.y - pl.uy * pl.x};                 /* of the gap, in the body's frame */
+    const double U[3] = {1, 0, across};                                               /* of the slip */
+    const double turn = -pl.uy * pl.y - pl.ux * pl.x;
+    const double P[3] = {pl.uy, -pl.ux, turn};                                        /* of the place along the round end */
+    const double rate = G[0] * (v[0] * cb + v[1] * sb) + G[1] * (-v[0] * sb + v[1] * cb) + G[2] * v[2];
+    law = contact_law(sys, gap, rate, p->start[i] + slip, sys->corner_friction[k], held);
+    store(p, i, gap, &law, weight, slip);
+
+    const double d_normal = law.d_gap * fq + law.d_rate * fv;
+    const double F[3] = {law.normal * G[0] + law.tangential, law.normal * G[1], law.normal * G[2]};
+    double K[3][3];
+    for (int r = 0; r < 3; r++) for (int c = 0; c < 3; c++) {
+        K[r][c] = weight * (d_normal * G[r] * G[c] + law.normal * fq * pl.curvature * P[r] * P[c])
+                + fq * F[r] * (far[c] * w_near + near[c] * w_far);
+        if (r == 0) K[r][c] += weight * (law.d_slip * fq * U[c] + law.d_normal * d_normal * G[c]);
+    }
+    const double wn = weight * law.normal * fq;
+    K[1][2] += -wn * pl.ux + weight * law.tangential * fq;
+    K[2][1] += -wn * pl.ux;
+    K[0][2] += wn * pl.uy;
+    K[2][0] += wn * pl.uy;
+    K[2][2] += wn * turn;
+
+    force[0] += weight * (F[0] * cb - F[1] * sb);
+    force[1] += weight * (F[0] * sb + F[1] * cb);
+    force[2] += weight * F[2];
+    double R[3][3];
+    for (int c = 0; c < 3; c++) {
+        R[0][c] = K[0][c] * cb - K[1][c] * sb;
+        R[1][c] = K[0][c] * sb + K[1][c] * cb;
+        R[2][c] = K[2][c];
+    }
+    for (int r = 0; r < 3; r++) {
+        tangent[3 * r] += R[r][0] * cb - R[r][1] * sb;
+        tangent[3 * r + 1] += R[r][0] * sb + R[r][1] * cb;
+        tangent[3 * r + 2] += R[r][2];
+    }
+}
+
+/* force (3 bodies), tangent (9 bodies, row by row of each block) are overwritten. */
+EXPORT void gw_contact_evaluate(const System *sys, const Motion *m, Pairs *nodes, Pairs *corners,
+                                double fq, double fv, double *force, double *tangent)
+{
+    for (int i = 0; i < 3 * sys->bodies; i++) force[i] = 0;
+    for (int i = 0; i < 9 * sys->bodies; i++) tangent[i] = 0;
+    for (int i = 0; i < nodes->count; i++)
+        node_pair(sys, m, nodes, i, fq, fv, force + 3 * nodes->body[i], tangent + 9 * nodes->body[i]);
+    for (int i = 0; i < corners->count; i++)
+        corner_pair(sys, m, corners, i, fq, fv, force + 3 * corners->body[i], tangent + 9 * corners->body[i]);
+}
+
+static int append(Pairs *p, int body, int target, double side)
+{
+    if (p->count >= p->capacity) return 0;
+    p->body[p->count] = body;
+    p->target[p->count] = target;
+    p->side[p->count] = side;
+    p->start[p->count] = p->held[p->count] = 0;
+    p->count++;
+    return 1;
+}
+
+/* Pairs that can touch within `reach` of travel. `first`: the first body whose node is in the vessel, not in the catheter.
+ * A node takes part with a wall only from its lumen side, a segment with a corner only from the side it passed on: what lies
+ * across a thin septum is not met. `sides` (corners) as in Pairs. Returns 0 when a list is full. */
+EXPORT int gw_contact_candidates(const System *sys, const Motion *m, const double *sides, int first, double reach,
+                                 Pairs *nodes, Pairs *corners)
+{
+    const double limit = sys->radius + sys->toe + reach;
+    nodes->count = corners->count = 0;
+    for (int b = 0; b < sys->bodies; b++) {
+        const double h = sys->half_length[b], px = m->q[3 * b] + h * m->c[b], py = m->q[3 * b + 1] + h * m->s[b];
+        for (int w = 0; w < sys->walls; w++) {
+            if (sys->wall_tube[w] != (b < first)) continue;
+            const double tx = sys->wall_tx[w], ty = sys->wall_ty[w], rx = px - sys->wall_x[w], ry = py - sys->wall_y[w];
+            const double height = -ty * rx + tx * ry, along = tx * rx + ty * ry;
+            if (height > limit || height < -limit || along < sys->wall_lo[w] - reach || along > sys->wall_hi[w] + reach) continue;
+            if (height < 0 && !(along < 0 && (sys->wall_sharp[w] & 1)) && !(along > sys->wall_length[w] && (sys->wall_sharp[w] & 2))) continue;
+            if (!append(nodes, b, w, 0)) return 0;
+        }
+        for (int k = 0; k < sys->corners; k++) {
+            if (b < first && !sys->corner_tube[k]) continue;
+            const double dx = sys->corner_x[k] - m->q[3 * b], dy = sys->corner_y[k] - m->q[3 * b + 1];
+            const double x = dx * m->c[b] + dy * m->s[b], y = -dx * m->s[b] + dy * m->c[b], over = magnitude(x) - h;
+            if (over > limit || y > limit || y < -limit) continue;
+            if (sides[k] * y < 0 && over <= 0) continue;
+            if (!append(corners, b, k, sides[k])) return 0;
+        }
+    }
+    return 1;
+}
+
+/* For each corner the nearest body, and whether the corner lies ahead of the tip (1) or beside the wire (0). */
+EXPORT void gw_contact_nearest(const System *sys, const Motion *m, int first, int *body, int *ahead, double *offset)
+{
+    for (int k = 0; k < sys->corners; k++) {
+        double best = 1e300;
+        body[k] = -1;
+        for (int b = sys->corner_tube[k] ? 0 : first; b < sys->bodies; b++) {
+            const Place pl = corner_place(sys, m, b, sys->corner_x[k], sys->corner_y[k], 0);
+            const double d = pl.over * pl.over + pl.y * pl.y;
+            if (d < best) {
+                best = d;
+                body[k] = b;
+                ahead[k] = b == sys->bodies - 1 && pl.over > 0;
+                offset[k] = pl.y;
+            }
+        }
+    }
+}
+
+/* What the pairs of one body add to the curvature of the chain's potential, about the body's proximal joint. */
+typedef struct { double pp[3], pa[2], aa, force[2]; } Curvature;    /* pp: xx, xy, yy */
+
+static void add_spring(Curvature *k, double stiffness, double dx, double dy, double lever, double nx, double ny)
+{
+    const double along = lever * (dx * nx + dy * ny);
+    k->pp[0] += stiffness * dx * dx;
+    k->pp[1] += stiffness * dx * dy;
+    k->pp[2] += stiffness * dy * dy;
+    k->pa[0] += stiffness * dx * along;
+    k->pa[1] += stiffness * dy * along;
+    k->aa += stiffness * along * along;
+}
+
+static void add_node(const System *sys, const Motion *m, const Pairs *p, int i, Curvature *k)
+{
+    const int b = p->body[i], w = p->target[i];
+    const double lever = 2 * sys->half_length[b], tx = sys->wall_tx[w], ty = sys->wall_ty[w];
+    const double normal = p->weight[i] * p->normal[i], tangential = p->weight[i] * p->tangential[i];
+    const double fx = -ty * normal + tx * tangential, fy = tx * normal + ty * tangential;
+    add_spring(k, p->normal_stiffness[i], -ty, tx, lever, -m->s[b], m->c[b]);
+    add_spring(k, p->tangential_stiffness[i], tx, ty, lever, -m->s[b], m->c[b]);
+    k->force[0] += fx;
+    k->force[1] += fy;
+    k->aa += lever * (m->c[b] * fx + m->s[b] * fy);
+}
+
+static void add_corner(const System *sys, const Motion *m, const Pairs *p, int i, Curvature *k)
+{
+    const int b = p->body[i], c = p->target[i];
+    const double cb = m->c[b], sb = m->s[b], h = sys->half_length[b];
+    const Place pl = corner_place(sys, m, b, sys->corner_x[c], sys->corner_y[c], p->side[i]);
+    const double ux = pl.ux * cb - pl.uy * sb, uy = pl.ux * sb + pl.uy * cb;
+    const double lever = h + clamp(pl.x, -h, h), normal = p->weight[i] * p->normal[i], tangential = p->weight[i] * p->tangential[i];
+    add_spring(k, p->normal_stiffness[i], ux, uy, lever, -sb, cb);
+    add_spring(k, p->tangential_stiffness[i], cb, sb, lever, -sb, cb);
+    const double fx = -normal * ux + tangential * cb, fy = -normal * uy + tangential * sb;
+    k->force[0] += fx;
+    k->force[1] += fy;
+    if (pl.over == 0) {                             /* beside the segment the normal turns with it */
+        k->pa[0] -= normal * pl.uy * cb;
+        k->pa[1] -= normal * pl.uy * sb;
+        k->aa += normal * pl.distance + lever * tangential;
+    } else {
+        k->aa += lever * (cb * fx + sb * fy);
+    }
+}
+
+/* Number of directions in which the converged step is a maximum, not a minimum, of the chain's incremental potential.
+ * The angles are eliminated from the tip to the catheter; each pivot is the curvature left in one angle (Sylvester's law of
+ * inertia). joint_stiffness (bodies): N m/rad of the joint at the proximal end, with the damper's share of this step. */
+EXPORT int gw_contact_unstable(const System *sys, const Motion *m, const Pairs *nodes, const Pairs *corners, const double *joint_stiffness)
+{
+    double pp[3] = {0, 0, 0}, pa[2] = {0, 0}, aa = 0, tail[2] = {0, 0};   /* value of the distal part: place of its joint, angle before it */
+    int negative = 0, i = nodes->count - 1, j = corners->count - 1;
+    for (int b = sys->bodies - 1; b >= 0; b--) {
+        Curvature k = {{0, 0, 0}, {0, 0}, 0, {0, 0}};
+        for (; i >= 0 && nodes->body[i] == b; i--) if (nodes->normal[i] > 0) add_node(sys, m, nodes, i, &k);
+        for (; j >= 0 && corners->body[j] == b; j--) if (corners->normal[j] > 0) add_corner(sys, m, corners, j, &k);
+        const double length = 2 * sys->half_length[b], nx = -m->s[b], ny = m->c[b], stiffness = joint_stiffness[b];
+        const double px = pp[0] * nx + pp[1] * ny, py = pp[1] * nx + pp[2] * ny;
+        const double ax = length * px + pa[0] + k.pa[0], ay = length * py + pa[1] + k.pa[1];
+        const double pivot = stiffness + k.aa + length * (m->c[b] * tail[0] + m->s[b] * tail[1])
+                           + length * length * (nx * px + ny * py) + 2 * length * (nx * pa[0] + ny * pa[1]) + aa;
+        if (pivot <= 0) negative++;
+        const double inverse = pivot != 0 ? 1 / pivot : 0;
+        pp[0] += k.pp[0] - ax * ax * inverse;
+        pp[1] += k.pp[1] - ax * ay * inverse;
+        pp[2] += k.pp[2] - ay * ay * inverse;
+        pa[0] = stiffness * ax * inverse;
+        pa[1] = stiffness * ay * inverse;
+        aa = stiffness - stiffness * stiffness * inverse;
+        tail[0] += k.force[0];
+        tail[1] += k.force[1];
+    }
+    return negative;
+}
+
+static double cross(double ax, double ay, double bx, double by) { return ax * by - ay * bx; }
+
+/* The first wire segment, from body `first` on, whose axis crosses a wall of the vessel: the wire has left the lumen there.
+ * Returns the body, or -1; *wall is the wall crossed. Open ends are no walls, so leaving through them is no crossing. */
+EXPORT int gw_contact_crossing(const System *sys, const Motion *m, int first, int *wall)
+{
+    for (int b = first; b < sys->bodies; b++) {
+        const double h = sys->half_length[b], dx = 2 * h * m->c[b], dy = 2 * h * m->s[b];
+        const double x = m->q[3 * b] - 0.5 * dx, y = m->q[3 * b + 1] - 0.5 * dy;
+        for (int w = 0; w < sys->walls; w++) {
+            if (sys->wall_tube[w]) continue;
+            const double tx = sys->wall_tx[w], ty = sys->wall_ty[w], length = sys->wall_length[w];
+            const double ax = x - sys->wall_x[w], ay = y - sys->wall_y[w];
+            const double side0 = cross(tx, ty, ax, ay), side1 = cross(tx, ty, ax + dx, ay + dy);
+            if ((side0 >= 0) == (side1 >= 0)) continue;
+            const double u = side0 / (side0 - side1), along = (ax + u * dx) * tx + (ay + u * dy) * ty;
+            if (along >= 0 && along <= length) {
+                *wall = w;
+                return b;
+            }
+        }
+    }
+    return -1;
+}

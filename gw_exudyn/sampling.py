@@ -1,0 +1,167 @@
+"""One output instant: everything that a result keeps, in the scenario's plane and the table's units."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gw_exudyn.engine.stepper import Stepper
+from gw_exudyn.model.energy import joint_moments, relative_angles
+from gw_exudyn.model.kernel import Pairs
+
+Floats = NDArray[np.float64]
+
+NODE_ON_WALL, CORNER_ON_WIRE, TIP_ON_CORNER = 0, 1, 2
+VESSEL, CATHETER = 0, 1
+
+
+def sample(stepper: Stepper) -> dict[str, Any]:
+    """The quantities of the table at the time reached (see `quantities`): scalars, node, joint and contact arrays."""
+    contacts = contact_points(stepper)
+    return {
+        "time": stepper.time,
+        **_place(stepper),
+        **_forces(stepper, contacts),
+        **_energies(stepper),
+        **_solver(stepper),
+        **{name: contacts[name] for name in contacts if name.startswith("contact_")},
+    }
+
+
+def _place(stepper: Stepper) -> dict[str, Any]:
+    wire, motion, frame = stepper.model.wire, stepper.contact.motion, stepper.model.frame
+    arm = wire.lengths[:, None] / 2 * np.column_stack([motion.c, motion.s])
+    nodes = frame.points_out(np.vstack([motion.q[:1, :2] - arm[:1], motion.q[:, :2] + arm]))
+    return {
+        "insertion_depth": stepper.instant.travel,
+        "tip_x": nodes[-1, 0],
+        "tip_y": nodes[-1, 1],
+        "tip_angle": motion.q[-1, 2] + frame.angle,
+        "node_x": nodes[:, 0],
+        "node_y": nodes[:, 1],
+        "joint_angle": relative_angles(motion.q[:, 2]),
+        "joint_torque": -joint_moments(wire, motion),
+        "drive_speed": stepper.drive.speed_at(stepper.time),
+        "drive_position": stepper.instant.travel - wire.length,
+    }
+
+
+def contact_points(stepper: Stepper) -> dict[str, Floats]:
+    """The contacts that carry a force, (c,) each: the table's contact fields, and `force` (c, 2), N, of the wire on the wall
+    in the plane, and `at_tip` (c,) bool, on the tip's disc."""
+    nodes, corners = _node_contacts(stepper), _corner_contacts(stepper)
+    joined = {name: np.concatenate([nodes[name], corners[name]]) for name in nodes}
+    points = stepper.model.frame.points_out(joined.pop("point"))
+    return {**joined, "contact_x": points[:, 0], "contact_y": points[:, 1]}
+
+
+def _node_contacts(stepper: Stepper) -> dict[str, Floats]:
+    pairs, wire, walls, motion = stepper.contact.nodes, stepper.model.wire, stepper.model.walls, stepper.contact.motion
+    live = _carrying(pairs)
+    body, wall = pairs.body[live], pairs.target[live]
+    along = np.column_stack([motion.c[body], motion.s[body]])
+    node = motion.q[body, :2] + wire.lengths[body, None] / 2 * along
+    tangent, normal = walls.tangent[wall], walls.normal[wall]
+    pressed, dragged = _shares(pairs, live)
+    on_wire = pressed[:, None] * normal + dragged[:, None] * tangent
+    is_tip = body == wire.segments - 1
+    return {
+        "point": node - wire.radius * normal,
+        "contact_arc_length": wire.node_arc_length[body + 1],
+        "contact_normal_force": pressed,
+        "contact_tangential_force": -dragged * (tangent * along).sum(axis=1),
+        "contact_gap": pairs.gap[live],
+        "contact_kind": np.full(len(body), NODE_ON_WALL),
+        "contact_owner": np.where(walls.tube[wall], CATHETER, VESSEL),
+        "force": stepper.model.frame.vectors_out(-on_wire),
+        "at_tip": is_tip,
+    }
+
+
+def _corner_contacts(stepper: Stepper) -> dict[str, Floats]:
+    pairs, wire, walls, motion = (
+        stepper.contact.corners,
+        stepper.model.wire,
+        stepper.model.walls,
+        stepper.contact.motion,
+    )
+    live = _carrying(pairs)
+    body, corner = pairs.body[live], pairs.target[live]
+    half = wire.lengths[body] / 2
+    along = np.column_stack([motion.c[body], motion.s[body]])
+    place = walls.corner[corner]
+    offset = place - motion.q[body, :2]
+    beside = np.clip((offset * along).sum(axis=1), -half, half)
+    away = offset - beside[:, None] * along
+    direction = away / np.maximum(np.hypot(*away.T), 1e-300)[:, None]
+    past_tip = (body == wire.segments - 1) & ((offset * along).sum(axis=1) > half)
+    pressed, dragged = _shares(pairs, live)
+    on_wire = -pressed[:, None] * direction + dragged[:, None] * along
+    return {
+        "point": place,
+        "contact_arc_length": wire.node_arc_length[body + 1] + half - beside,
+        "contact_normal_force": pressed,
+        "contact_tangential_force": -dragged,
+        "contact_gap": pairs.gap[live],
+        "contact_kind": np.where(past_tip, TIP_ON_CORNER, CORNER_ON_WIRE),
+        "contact_owner": np.where(walls.corner_tube[corner], CATHETER, VESSEL),
+        "force": stepper.model.frame.vectors_out(-on_wire),
+        "at_tip": past_tip,
+    }
+
+
+def _carrying(pairs: Pairs) -> NDArray[np.bool_]:
+    live: NDArray[np.bool_] = (pairs.normal > 0) & (pairs.weight > 0)
+    return live
+
+
+def _shares(pairs: Pairs, live: NDArray[np.bool_]) -> tuple[Floats, Floats]:
+    """Normal and tangential force on the wire, N, weighted."""
+    return pairs.weight[live] * pairs.normal[live], pairs.weight[live] * pairs.tangential[live]
+
+
+def _forces(stepper: Stepper, contacts: Mapping[str, Floats]) -> dict[str, Any]:
+    force, normal = contacts["force"], contacts["contact_normal_force"]
+    vessel = contacts["contact_owner"] == VESSEL
+    wall, catheter = force[vessel].sum(axis=0), force[~vessel].sum(axis=0)
+    tip = force[contacts["at_tip"].astype(bool)].sum(axis=0)
+    return {
+        "push_force": stepper.instant.push,
+        "tip_force": float(np.hypot(*tip)),
+        "wall_force_x": wall[0],
+        "wall_force_y": wall[1],
+        "wall_force_normal": normal[vessel].sum(),
+        "wall_force_tangential": contacts["contact_tangential_force"][vessel].sum(),
+        "wall_force_max": np.hypot(*force[vessel].T).max(initial=0.0),
+        "catheter_force_x": catheter[0],
+        "catheter_force_y": catheter[1],
+        "catheter_force_normal": normal[~vessel].sum(),
+        "contacts": np.count_nonzero(vessel),
+        "penetration_max": stepper.contact.deepest()[0],
+    }
+
+
+def _energies(stepper: Stepper) -> dict[str, float]:
+    energies = stepper.energies
+    return {
+        "insertion_work": energies.insertion_work,
+        "elastic_energy": energies.elastic,
+        "wall_energy": energies.wall,
+        "kinetic_energy": energies.kinetic,
+        "friction_loss": energies.friction_loss,
+        "damping_loss": energies.damping_loss,
+        "numerical_loss": energies.numerical_loss,
+        "energy_error": energies.error,
+    }
+
+
+def _solver(stepper: Stepper) -> dict[str, Any]:
+    counts = stepper.counts()
+    return {
+        "solver_steps": counts["solver_steps"],
+        "newton_iterations": counts["newton_iterations"],
+        "smallest_step": stepper.smallest_step if counts["solver_steps"] else stepper.model.scenario.solver.step,
+    }

@@ -1,0 +1,206 @@
+"""The simulation of a scenario: `Simulation` to step it, `simulate` to run it whole."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import time as clock
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gw_exudyn.engine.state import from_arrays, pack, to_arrays, unpack
+from gw_exudyn.engine.stepper import Stepper
+from gw_exudyn.errors import UsageError
+from gw_exudyn.model import Model, build
+from gw_exudyn.result import Result, Status, StatusReport
+from gw_exudyn.sampling import sample
+from gw_exudyn.trust import energy_report, snap_events, trust_report
+
+if TYPE_CHECKING:
+    from gw_exudyn.scenario import Scenario
+
+Progress = Callable[[float, float, Mapping[str, Any]], None]
+"""progress(time reached, time of the end, outputs), after each output interval."""
+
+
+class Simulation:
+    """A scenario in motion. Several may live in one process; none knows of the others.
+
+    Raises ScenarioError for a scenario that cannot start, SolverError where Exudyn is not there.
+
+    scenario : Scenario. model : Model, what was built of it.
+    """
+
+    def __init__(self, scenario: Scenario) -> None:
+        self.scenario = scenario
+        self.model: Model = build(scenario)
+        self._stepper = Stepper(self.model)
+        self._stopped: StatusReport | None = None
+
+    def reset(self) -> None:
+        """Back to the start of the scenario, with the scenario's own drive."""
+        self._stepper.reset()
+        self._stopped = None
+
+    @property
+    def time(self) -> float:
+        """Time reached, s."""
+        return self._stepper.time
+
+    @property
+    def duration(self) -> float:
+        """Time, s, at which the scenario's drive ends; stepping on beyond it holds the drive's last speed."""
+        return self.scenario.drive.duration
+
+    @property
+    def status(self) -> StatusReport:
+        """Whether what was run so far can be trusted; if not, what failed, when and where."""
+        return self._stopped or StatusReport(Status.STOPPED, self.time)
+
+    @property
+    def failed(self) -> bool:
+        """The run cannot go on."""
+        return self._stopped is not None
+
+    @property
+    def outputs(self) -> Mapping[str, Any]:
+        """Every quantity of the table of quantities at the time reached: floats, and arrays over nodes, joints and contacts."""
+        return MappingProxyType(sample(self._stepper))
+
+    def step(self, dt: float, *, speed: float | None = None) -> Mapping[str, Any]:
+        """Go on by dt and return the outputs there.
+
+        dt : s, positive; any length, it need not fit the solver's step: results do not depend on how time is cut into calls.
+        speed : m/s of the drive from now on, positive into the vessel; None keeps what drives it now (at first the scenario's
+            own drive).
+
+        When the run cannot go on, it ends early: `status` then says why, and `outputs` are those of the last good step.
+        Raises UsageError for a step that is not positive, a speed that is no number, or a run that has failed before.
+        """
+        if not (math.isfinite(dt) and dt > 0):
+            raise UsageError(f"a step of {dt} s cannot be taken; it must be positive")
+        if speed is not None:
+            self._take_over(speed)
+        self.advance(self.time + dt)
+        return self.outputs
+
+    def advance(self, target: float) -> bool:
+        """Run to the time `target`, s; False when the run failed on the way (see `status`). Raises UsageError after that."""
+        if self._stopped is not None:
+            raise UsageError(f"the run has ended: {self._stopped.sentence()} Reset it, or restore an earlier state.")
+        step = self.scenario.solver.step
+        while self.time < target - 1e-9:
+            # One nominal step at a time, so that a run that went wrong is stopped there and not at the end.
+            stop = min(target, (math.floor(self.time / step + 1e-6) + 1) * step)
+            reached = self._stepper.advance(stop)
+            self._stopped = trust_report(self._stepper, converged=reached)
+            if self._stopped is not None:
+                return False
+        return True
+
+    def _take_over(self, speed: float) -> None:
+        if not math.isfinite(speed):
+            raise UsageError(f"a speed of {speed} m/s cannot be driven; it must be a finite number")
+        stepper = self._stepper
+        if stepper.drive.taken_over is None or stepper.drive.taken_over[2] != speed:
+            stepper.take_over(speed)
+
+    def get_state(self) -> bytes:
+        """The whole state: a simulation of the same scenario that restores it goes on bit for bit, also in another process.
+
+        At a time between two solver steps the state holds both that instant and the step's start.
+        """
+        arrays = {f"now.{name}": array for name, array in to_arrays(self._stepper.state()).items()}
+        grid = self._stepper.grid_state
+        if grid is not None:
+            arrays |= {f"grid.{name}": array for name, array in to_arrays(grid).items()}
+        taken_over = self._stepper.drive.taken_over
+        arrays["drive"] = np.array(taken_over if taken_over is not None else ())
+        arrays["counts"] = self._stepper.bookkeeping()
+        return pack(arrays, self._fingerprint())
+
+    def set_state(self, state: bytes) -> None:
+        """Go on from a state. Raises UsageError for bytes that are none, damaged, or of another scenario; the simulation then
+        stays as it was."""
+        arrays = unpack(state, self._fingerprint())
+        drive = tuple(float(x) for x in arrays.pop("drive"))
+        counts = arrays.pop("counts")
+        parts: dict[str, dict[str, Any]] = {"now": {}, "grid": {}}
+        for name, array in arrays.items():
+            part, _, rest = name.partition(".")
+            parts[part][rest] = array
+        grid = from_arrays(parts["grid"]) if parts["grid"] else None
+        self._stepper.set_everything(from_arrays(parts["now"]), grid, drive, counts)
+        self._stopped = None
+
+    def _fingerprint(self) -> str:
+        text = json.dumps(self.scenario.to_dict(), sort_keys=True)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def finished(self) -> StatusReport:
+        """How the run ended, now that it has reached its end: completed, unless the energies do not add up."""
+        return self._stopped or energy_report(self._stepper) or StatusReport(Status.COMPLETED, self.time)
+
+    def result(self, samples: list[dict[str, Any]], status: StatusReport, wall_time: float) -> Result:
+        """A result of output instants (`outputs` at rising times). wall_time : s, of the solution alone."""
+        stepper = self._stepper
+        return Result.from_samples(
+            samples,
+            scenario=self.scenario,
+            status=status,
+            node_arc_length=self.model.wire.node_arc_length,
+            joint_arc_length=self.model.wire.joint_arc_length,
+            snaps=snap_events(stepper),
+            vessel_outline=self.model.vessel_outline(),
+            catheter_outline=self.model.catheter_outline(),
+            wall_time=wall_time,
+            counters=stepper.counts(),
+        )
+
+
+def simulate(
+    scenario: Scenario, progress: Progress | None = None, should_stop: Callable[[], bool] | None = None
+) -> Result:
+    """Run a scenario to the end of its drive.
+
+    progress : called after each output interval. should_stop : asked there; True ends the run with the status STOPPED, and so
+        does Ctrl-C (KeyboardInterrupt) at any time. What was computed until then is in the result.
+
+    A run that cannot go on or cannot be trusted ends with a status that says why; it raises nothing. Raises ScenarioError for
+    a scenario that cannot start.
+    """
+    simulation = Simulation(scenario)
+    samples = [dict(simulation.outputs)]
+    spent, status = 0.0, None
+    try:
+        for target in output_times(scenario):
+            began = clock.perf_counter()
+            going = simulation.advance(target)
+            spent += clock.perf_counter() - began
+            samples.append(dict(simulation.outputs))
+            if progress is not None:
+                progress(simulation.time, simulation.duration, samples[-1])
+            if not going:
+                break
+            if should_stop is not None and should_stop():
+                status = StatusReport(Status.STOPPED, simulation.time)
+                break
+    except KeyboardInterrupt:
+        status = StatusReport(Status.STOPPED, simulation.time, detail="interrupted")
+    return simulation.result(samples, status or simulation.finished(), spent)
+
+
+def output_times(scenario: Scenario) -> list[float]:
+    """Times, s, of the outputs after the start: every interval, and the end."""
+    duration, interval = scenario.drive.duration, scenario.output.interval
+    count = math.floor(duration / interval + 1e-9)
+    times = [interval * (i + 1) for i in range(count)]
+    if not times or times[-1] < duration - 1e-9:
+        times.append(duration)
+    else:
+        times[-1] = duration
+    return times
