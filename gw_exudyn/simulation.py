@@ -67,6 +67,16 @@ class Simulation:
         return self._stopped is not None
 
     @property
+    def penetration(self) -> float:
+        """Deepest penetration of the wire into a wall at the time reached, m."""
+        return self._stepper.contact.deepest()[0]
+
+    @property
+    def counters(self) -> dict[str, int]:
+        """Solver counts since the last reset."""
+        return self._stepper.counts()
+
+    @property
     def outputs(self) -> Mapping[str, Any]:
         """Every quantity of the table of quantities at the time reached: floats, and arrays over nodes, joints and contacts."""
         return MappingProxyType(sample(self._stepper))

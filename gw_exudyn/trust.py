@@ -13,8 +13,8 @@ DEEPEST = 0.3
 OPEN_ENERGY = 0.01
 """Largest trusted energy error over the largest work."""
 
-ENERGY_FLOOR = 1e-9
-"""Works below this, J, are too small for the energy check: a thousandth of bending a guidewire's tip by ten degrees."""
+ENERGY_FLOOR = 1e-7
+"""Works below this, J, are too small for the energy check: bending the tip of a soft guidewire by five degrees takes as much."""
 
 SNAP_SHARE = 0.02
 """A solver step that loses more than this share of the largest work to the integrator is a snap-through."""

@@ -66,8 +66,8 @@ def draw_arrows(axes: Axes, points: Floats, lengths: Floats, colour: tuple[float
             angles="xy",
             scale_units="xy",
             scale=1.0,
-            units="dots",
-            width=_dots(axes, 1.5),
+            units="inches",
+            width=1.5 / 72,
             headwidth=4.0,
             headlength=5.0,
             headaxislength=4.5,
@@ -75,11 +75,6 @@ def draw_arrows(axes: Axes, points: Floats, lengths: Floats, colour: tuple[float
             color=colour,
             zorder=zorder,
         )
-
-
-def _dots(axes: Axes, points: float) -> float:
-    """Typographic points as dots of the figure."""
-    return points * float(axes.figure.dpi) / 72.0
 
 
 def round_down(value: float) -> float:

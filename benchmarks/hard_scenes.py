@@ -1,0 +1,64 @@
+"""Scenes that break solvers: how each ends, and what it costs beside bend60 with the same number of segments.
+
+    python benchmarks/hard_scenes.py [--segments 20 100 400] [--only "corner 90"]
+
+Each scene ends, or is stopped by a status that names the reason. A wire that is pushed square against a wall with much friction
+jams in earnest, and short rigid segments jam sooner.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import cases
+from harness import machine, run, table
+
+FRICTIONS = (0.0, 0.2, 0.4, 0.6)
+MOST = 3.0
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--segments", type=int, nargs="+", default=[20, 100, 400])
+    parser.add_argument("--only")
+    options = parser.parse_args()
+    print(machine())
+    rows, slow, total = [], 0, 0
+    for segments in options.segments:
+        base = run(cases.bend60(segments), 3).cost
+        print(f"\nbend60, n = {segments}: {base:.4g} s per s", flush=True)
+        for name, vessel in [*cases.vessels().items(), ("push, hold, pull", cases.vessels()["corner 90"])]:
+            if options.only and name != options.only:
+                continue
+            for wire in cases.WIRES:
+                for friction in FRICTIONS:
+                    changes = {"drive": cases.PUSH_HOLD_PULL} if name == "push, hold, pull" else {}
+                    outcome = run(cases.insertion(vessel, wire, segments, friction, **changes))
+                    ratio = outcome.cost / base
+                    slow, total = slow + (ratio > MOST), total + 1
+                    row = [
+                        name,
+                        wire,
+                        str(segments),
+                        f"{friction:g}",
+                        outcome.status.status.name,
+                        f"{outcome.reached:.2f}",
+                        f"{outcome.tip[0]:.2f}, {outcome.tip[1]:.2f}",
+                        f"{outcome.push:.3g}",
+                        f"{outcome.deepest:.3g}",
+                        f"{ratio:.2f}",
+                    ]
+                    rows.append(row)
+                    print("  ".join(row), flush=True)
+    head = ["scene", "wire", "n", "friction", "status", "time, s", "tip, mm", "push, N", "penetration, um", "cost / bend60"]
+    print("\n" + table(head, rows))
+    print(f"\n{total} scenes, {slow} cost more than {MOST:g} times bend60 per simulated second")
+
+
+if __name__ == "__main__":
+    main()

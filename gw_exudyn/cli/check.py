@@ -1,0 +1,81 @@
+"""`gw-exudyn check`: is the scenario sound, and what would be run?"""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from gw_exudyn.cli import options
+from gw_exudyn.cli.console import put_json, put_table, tell
+from gw_exudyn.errors import ScenarioError
+
+if TYPE_CHECKING:
+    from gw_exudyn.scenario import Scenario
+
+
+@click.command(
+    cls=options.ShippedCommand,
+    short_help="Check a scenario and say what would be run.",
+    help=f"""Check a SCENARIO without running it: everything that is wrong is told at once, with file, line and what is
+    allowed; else a summary of what would be run.
+
+    {options.SCENARIO_HELP}.""",
+)
+@click.argument("scenario", metavar="SCENARIO")
+@options.overrides
+@options.as_json
+def command(scenario: str, overrides: tuple[str, ...], as_json: bool) -> int:
+    """Load, build the model, and tell of it."""
+    from gw_exudyn import model
+    from gw_exudyn.scenario import load_scenario
+
+    try:
+        loaded = load_scenario(scenario, overrides)
+        described = model.build(loaded).describe()
+    except ScenarioError as error:
+        if as_json:
+            put_json({"valid": False, "problems": [asdict(problem) for problem in error.problems]})
+        raise
+    if as_json:
+        put_json({"valid": True, "problems": [], "name": loaded.name, "model": described})
+        return 0
+    put_table(summary_rows(loaded, described))
+    for warning in described["warnings"]:
+        tell(f"warning: {warning}")
+    return 0
+
+
+def summary_rows(scenario: Scenario, described: dict[str, Any]) -> list[tuple[str, str]]:
+    """What would be run, as label and text."""
+    from gw_exudyn.scenario.units import format_quantity
+
+    def given(path: str, unit: str) -> str:
+        return format_quantity(float(f"{described[path]:.4g}"), unit)
+
+    wire, catheter = scenario.wire, scenario.catheter
+    least, largest = (given(f"wire.bending_stiffness_{end}", "N*mm^2") for end in ("least", "largest"))
+    shortest, longest = (given(f"wire.{end}_segment", "mm") for end in ("shortest", "longest"))
+    place = ", ".join(f"{value * 1e3:.4g}" for value in catheter.exit)
+    room = format_quantity(float(f"{described['vessel.width_at_exit'] - wire.diameter:.4g}"), "mm")
+    play = format_quantity(float(f"{catheter.bore - wire.diameter:.4g}"), "mm")
+    stiffness = "chosen" if scenario.contact.wall_stiffness is None else "given"
+    return [
+        ("scenario", scenario.name),
+        ("wire", f"{wire.model or 'given inline'}, {given('wire.diameter', 'mm')} by {given('wire.length', 'mm')}"),
+        ("bending stiffness", least if least == largest else f"{least} to {largest}"),
+        ("segments", f"{wire.segments} of {shortest if shortest == longest else f'{shortest} to {longest}'}"),
+        ("vessel", f"{scenario.vessel.kind}, {described['vessel.walls']} walls, {_corners(described)} into the lumen"),
+        ("lumen at the exit", f"{given('vessel.width_at_exit', 'mm')}, {room} wider than the wire"),
+        ("catheter", f"exit at ({place}) mm, bore {given('catheter.bore', 'mm')}, {play} wider than the wire"),
+        ("friction", f"{scenario.contact.friction_coefficient:g}"),
+        ("wall stiffness", f"{given('contact.wall_stiffness', 'N/m')}, {stiffness}"),
+        ("drive", f"{given('drive.furthest', 'mm')} in, {given('drive.duration', 's')} in all"),
+        ("solver steps", f"about {described['solver.steps']} of {format_quantity(scenario.solver.step, 'ms')}"),
+    ]
+
+
+def _corners(described: dict[str, Any]) -> str:
+    count = described["vessel.corners"]
+    return f"{count} corner{'' if count == 1 else 's'}"
