@@ -42,8 +42,9 @@ class Status(Enum):
         "Lower solver.step, use more segments (wire.segments), or raise contact.wall_stiffness."
     )
     TOO_DEEP = (
-        "The wire sank into a wall by more than 0.3 of its radius, so neither its path nor its forces can be trusted. "
-        "Raise contact.wall_stiffness, or leave it at auto."
+        "The wire was pressed into a wall by more than 0.3 of its radius, so neither its path nor its forces can be "
+        "trusted. If the push force has shot up, the wire is jammed: lower the friction, use more segments "
+        "(wire.segments), or push less far; else raise contact.wall_stiffness, or leave it at auto."
     )
     ENERGY_OPEN = (
         "The energies do not add up to within 1 % of the largest work. Lower solver.step and solver.tolerance."

@@ -72,7 +72,7 @@ def _node_contacts(stepper: Stepper) -> dict[str, Floats]:
         "point": node - wire.radius * normal,
         "contact_arc_length": wire.node_arc_length[body + 1],
         "contact_normal_force": pressed,
-        "contact_tangential_force": -dragged * (tangent * along).sum(axis=1),
+        "contact_tangential_force": -dragged * np.where((tangent * along).sum(axis=1) < 0, -1.0, 1.0),
         "contact_gap": pairs.gap[live],
         "contact_kind": np.full(len(body), NODE_ON_WALL),
         "contact_owner": np.where(walls.tube[wall], CATHETER, VESSEL),

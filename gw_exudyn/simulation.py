@@ -95,7 +95,8 @@ class Simulation:
             raise UsageError(f"a step of {dt} s cannot be taken; it must be positive")
         if speed is not None:
             self._take_over(speed)
-        self.advance(self.time + dt)
+        # Rounded, so that the sum of many small steps is the same time as one large step.
+        self.advance(round(self.time + dt, 12))
         return self.outputs
 
     def advance(self, target: float) -> bool:

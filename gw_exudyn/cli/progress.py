@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     from gw_exudyn.scenario import Scenario
     from gw_exudyn.simulation import Progress
 
+_FORCE_DECIMALS = 5
+"""Of the push force, N, that the bar shows."""
+
 
 @contextmanager
 def progress(scenario: Scenario, quiet: bool) -> Iterator[Progress | None]:
@@ -43,6 +46,7 @@ def progress(scenario: Scenario, quiet: bool) -> Iterator[Progress | None]:
         task = bars.add_task(scenario.name, total=scenario.drive.duration, force="-")
 
         def report(time: float, end: float, outputs: Mapping[str, Any]) -> None:
-            bars.update(task, completed=time, total=end, force=display("push_force", float(outputs["push_force"])))
+            force = round(float(outputs["push_force"]), _FORCE_DECIMALS) + 0.0  # no dust, and no minus before a zero
+            bars.update(task, completed=time, total=end, force=display("push_force", force))
 
         yield report

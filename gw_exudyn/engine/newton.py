@@ -21,6 +21,9 @@ _LIMIT = 0.75
 _TUNNELLED = 0.5
 """Penetration, in radii, that one step may not reach from less than the trusted depth."""
 
+_JUMP, _FOLLOWED = 1.5, 2.0
+"""A step may move a segment by so many radii, and by so many times the drive's travel, together."""
+
 _HELD_ITERATIONS = 2
 """Iterations in which the tangent keeps the stiffness of the contacts at the step's start."""
 
@@ -38,7 +41,7 @@ class Newton:
         # The same pattern at every call lets the factorisation keep its analysis.
         self._triplets = np.column_stack([rows, columns, np.zeros(9 * count)]).astype(float)
         self._limit = _LIMIT * contact.wire.radius
-        self._step = 1.0
+        self._step, self._travel = 1.0, 0.0
         self._end = 0.0
         self._last: Floats = np.zeros(0)
         self.reset_counts()
@@ -65,12 +68,12 @@ class Newton:
         self._system = system
         self._data = system.mbs.systemData
 
-    def install(self, start_trial: Callable[[float], float], end_step: Callable[[float], None]) -> None:
-        """Hand the callbacks to Exudyn. start_trial(end) -> step, s; end_step(time) for each accepted step."""
+    def install(self, start_trial: Callable[[float], tuple[float, float]], end_step: Callable[[float], None]) -> None:
+        """Hand the callbacks to Exudyn. start_trial(end) -> (step, s; travel of the drive in it, m); end_step(time) for each accepted step."""
         mbs = self._system.mbs
 
         def before_step(_: Any, time: float) -> bool:
-            self._step = start_trial(time)
+            self._step, self._travel = start_trial(time)
             return True
 
         def after_step(_: Any, time: float) -> bool:
@@ -134,14 +137,15 @@ class Newton:
 
     def _after_newton(self, _mbs: Any, _time: float) -> list[float]:
         """Refuse what converged to the wrong thing; the step is then cut."""
-        wrong = self._moved_too_far() or self._tunnelled() or self._unstable()
+        wrong = self._jumped() or self._tunnelled() or self._unstable()
         self.refused += wrong
         return _REFUSE if wrong else _ACCEPT
 
-    def _moved_too_far(self) -> bool:
-        """Further than the pairs were searched for."""
+    def _jumped(self) -> bool:
+        """A segment moved much further than the drive: the step skipped a snap-through, whose branch only short steps find."""
         motion = self._contact.motion
-        return float(np.abs(motion.q[:, :2] - motion.q0[:, :2]).max()) > self._contact.reach
+        moved = float(np.abs(motion.q[:, :2] - motion.q0[:, :2]).max())
+        return moved > _JUMP * self._contact.wire.radius + _FOLLOWED * abs(self._travel)
 
     def _tunnelled(self) -> bool:
         return self._contact.deepest()[0] > _TUNNELLED * self._contact.wire.radius

@@ -116,10 +116,11 @@ class Stepper:
     def _fastest(self, end: float) -> float:
         return max(abs(self.drive.speed_at(self._time)), abs(self.drive.speed_at(end)))
 
-    def _start_trial(self, end: float) -> float:
-        """Exudyn begins a (perhaps repeated) step that ends at `end`: place the hub. Returns the step, s."""
-        self.system.mbs.SetObjectParameter(self.system.drive, "offset", self.drive.position_at(end))
-        return end - self._time
+    def _start_trial(self, end: float) -> tuple[float, float]:
+        """Exudyn begins a (perhaps repeated) step that ends at `end`: place the hub. Returns the step, s, and the travel, m."""
+        position = self.drive.position_at(end)
+        self.system.mbs.SetObjectParameter(self.system.drive, "offset", position)
+        return end - self._time, position - self._instant.travel
 
     def _end_step(self, time: float) -> None:
         """A step was accepted: take over its forces, count its energies, find the pairs of the next."""

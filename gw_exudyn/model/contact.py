@@ -43,10 +43,10 @@ class ContactMemory:
 
     node_keys : (a,), sorted; node pair (body * walls + wall) that carried a force. node_slip : (a,), m, its elastic slip;
         node_held : (a,), its share of the full stiffness.
-    corner_keys : (b,), sorted; corner pair (body * corners + corner). corner_held : (b,).
+    corner_keys : (b,), sorted; corner pair (body * corners + corner). corner_pair_slip, corner_held : (b,).
     side : (k,), for each corner +1 or -1, the side of the wire on which it lies, or 0 while it is ahead of the tip. Decided
         when the tip passes, undone when it comes back.
-    corner_slip : (k,), m, elastic slip of the wire past the corner.
+    corner_slip : (k,), m, elastic slip of the wire past the corner, for a segment that is new to it.
     """
 
     side: Floats
@@ -55,6 +55,7 @@ class ContactMemory:
     node_slip: Floats = field(default_factory=_no_values)
     node_held: Floats = field(default_factory=_no_values)
     corner_keys: Ints = field(default_factory=_no_keys)
+    corner_pair_slip: Floats = field(default_factory=_no_values)
     corner_held: Floats = field(default_factory=_no_values)
 
 
@@ -98,7 +99,9 @@ class Contact:
         nodes.start[:] = _recalled(self._node_keys, memory.node_keys, memory.node_slip)
         nodes.held[:] = _recalled(self._node_keys, memory.node_keys, memory.node_held)
         corners.held[:] = _recalled(self._corner_keys, memory.corner_keys, memory.corner_held)
-        corners.start[:] = memory.corner_slip[corners.target]
+        known = np.isin(self._corner_keys, memory.corner_keys, assume_unique=True)
+        recalled = _recalled(self._corner_keys, memory.corner_keys, memory.corner_pair_slip)
+        corners.start[:] = np.where(known, recalled, memory.corner_slip[corners.target])
 
     def evaluate(self, position: float = 1.0, velocity: float = 0.0, *, predicted: bool = False) -> None:
         """Forces and tangent at the present place; tangent = position * d/dq + velocity * d/dq_t.
@@ -124,6 +127,7 @@ class Contact:
             node_slip=nodes.elastic[touching],
             node_held=nodes.normal_stiffness[touching] / nodes.weight[touching] / stiffness,
             corner_keys=self._corner_keys[meeting],
+            corner_pair_slip=corners.elastic[meeting],
             corner_held=corners.normal_stiffness[meeting] / corners.weight[meeting] / stiffness,
         )
 

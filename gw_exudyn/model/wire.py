@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
-DEFAULT_IMPERFECTION = 0.05
-"""Rest curvature of a wire that is called straight, 1/m (a radius of 20 m).
+DEFAULT_IMPERFECTION = 0.04
+"""Rest curvature of a wire that is called straight, 1/m (a radius of 25 m).
 
 A perfectly straight wire pushed square against a wall has no side to buckle to. This one has; `benchmarks/` shows that
 it moves a tip in a bend by less than 0.005 mm, and that a tenth or ten times of it lead to the same place.

@@ -13,7 +13,13 @@ EXPORTED = re.findall(r"^EXPORT \w+ (gw_\w+)\(", (build.HERE / "contact.c").read
 
 
 def test_every_platform_that_the_loader_knows_has_its_library():
-    platforms = [("Linux", "x86_64"), ("Linux", "aarch64"), ("Windows", "AMD64"), ("Darwin", "arm64"), ("Darwin", "x86_64")]
+    platforms = [
+        ("Linux", "x86_64"),
+        ("Linux", "aarch64"),
+        ("Windows", "AMD64"),
+        ("Darwin", "arm64"),
+        ("Darwin", "x86_64"),
+    ]
     assert {library_name(*platform) for platform in platforms} == set(build.TARGETS)
     for name in build.TARGETS:
         assert (build.LIBRARIES / name).is_file()

@@ -21,7 +21,9 @@ MAY_IMPORT = {
     "metrics": ABOVE_RESULT,
     "plots": ABOVE_RESULT | {"metrics", "storage"},
     "storage": ABOVE_RESULT | {"metrics", "plots"},
-    "simulation": ABOVE_RESULT | {"model", "engine"},
+    "sampling": ABOVE_RESULT | {"model", "engine"},
+    "trust": ABOVE_RESULT | {"model", "engine"},
+    "simulation": ABOVE_RESULT | {"model", "engine", "sampling", "trust"},
     "fmi": ABOVE_RESULT | {"model", "engine", "simulation"},
     "sweep": ABOVE_RESULT | {"metrics", "plots", "storage", "model", "engine", "simulation", "fmi"},
 }

@@ -121,7 +121,9 @@ def test_only_a_finished_or_a_stopped_run_is_trusted():
 def test_the_sentence_names_when_where_how_much_and_the_remedy():
     report = StatusReport(Status.TOO_DEEP, 3.2, "node 117", "61 µm, allowed are 54 µm")
     assert report.sentence() == (
-        "The wire sank into a wall by more than 0.3 of its radius, so neither its path nor its forces can be trusted "
-        "(t = 3.2 s; node 117; 61 µm, allowed are 54 µm). Raise contact.wall_stiffness, or leave it at auto."
+        "The wire was pressed into a wall by more than 0.3 of its radius, so neither its path nor its forces can be "
+        "trusted (t = 3.2 s; node 117; 61 µm, allowed are 54 µm). If the push force has shot up, the wire is jammed: "
+        "lower the friction, use more segments (wire.segments), or push less far; else raise contact.wall_stiffness, "
+        "or leave it at auto."
     )
     assert StatusReport(Status.COMPLETED).sentence() == "The run reached its end and passed every check."

@@ -115,8 +115,10 @@ def build(name: str, folder: Path) -> Path:
         run = subprocess.run(command, cwd=HERE, env={**os.environ, **caches}, capture_output=True, text=True)
         if run.returncode != 0:
             raise UsageError(f"{name} could not be built:\n{run.stderr.strip()}")
-        output.write_bytes(made.read_bytes())
-    output.chmod(0o644)
+        fresh = folder / f".{name}.part"
+        fresh.write_bytes(made.read_bytes())
+    fresh.chmod(0o644)
+    os.replace(fresh, output)  # never written in place: a running program may have it loaded
     return output
 
 

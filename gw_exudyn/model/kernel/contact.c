@@ -109,6 +109,10 @@ static void store(Pairs *p, int i, double gap, const Law *law, double weight, do
     p->normal_stiffness[i] = -weight * law->d_gap; p->tangential_stiffness[i] = -weight * law->d_slip;
 }
 
+/* Beside a corner that points into the lumen, a node that is behind the wall by more than a quarter of its distance from the
+ * corner has gone round it, on the corner's other side: this wall does not hold it. */
+static const double PASSING = 4;
+
 /* force (3) += , tangent (9) += derivative of the force: position part times fq, velocity part times fv. */
 static void node_pair(const System *sys, const Motion *m, Pairs *p, int i, double fq, double fv, double *force, double *tangent)
 {
@@ -120,7 +124,9 @@ static void node_pair(const System *sys, const Motion *m, Pairs *p, int i, doubl
     const double gap = nx * rx + ny * ry - sys->radius, along = tx * rx + ty * ry;
     const double mx = q[0] + ax - q0[0] - h * m->c0[b], my = q[1] + ay - q0[1] - h * m->s0[b];
     const double slip = tx * mx + ty * my;
-    const double a = (along - sys->wall_lo[w]) / sys->wall_fade_lo[w], z = (sys->wall_hi[w] - along) / sys->wall_fade_hi[w];
+    const double behind = gap < 0 ? PASSING : 0, at_lo = sys->wall_sharp[w] & 1 ? behind : 0, at_hi = sys->wall_sharp[w] & 2 ? behind : 0;
+    const double a = (along - sys->wall_lo[w] + at_lo * gap) / sys->wall_fade_lo[w];
+    const double z = (sys->wall_hi[w] - along + at_hi * gap) / sys->wall_fade_hi[w];
     const double weight = smooth(a) * smooth(z);
     Law law = {0, 0, 0, 0, 0, 0, 0, 0};
     const double held = m->predicted ? p->held[i] : 0;
@@ -130,7 +136,7 @@ static void node_pair(const System *sys, const Motion *m, Pairs *p, int i, doubl
     store(p, i, gap, &law, weight, slip);
 
     const double G[3] = {nx, ny, -nx * ay + ny * ax}, T[3] = {tx, ty, -tx * ay + ty * ax};   /* of gap and of slip */
-    const double d_weight = smooth_slope(a) / sys->wall_fade_lo[w] * smooth(z) - smooth(a) * smooth_slope(z) / sys->wall_fade_hi[w];
+    const double from_lo = smooth_slope(a) / sys->wall_fade_lo[w] * smooth(z), from_hi = smooth(a) * smooth_slope(z) / sys->wall_fade_hi[w];
     const double d_normal = law.d_gap * fq + law.d_rate * fv;
     double F[3];
     for (int r = 0; r < 3; r++) {
@@ -138,7 +144,7 @@ static void node_pair(const System *sys, const Motion *m, Pairs *p, int i, doubl
         force[r] += weight * F[r];
         for (int c = 0; c < 3; c++)
             tangent[3 * r + c] += weight * (d_normal * G[c] * (G[r] + law.d_normal * T[r]) + law.d_slip * fq * T[r] * T[c])
-                                + d_weight * fq * F[r] * T[c];
+                                + fq * F[r] * ((from_lo - from_hi) * T[c] + (from_lo * at_lo + from_hi * at_hi) * G[c]);
     }
     tangent[8] -= weight * fq * (law.normal * (nx * ax + ny * ay) + law.tangential * (tx * ax + ty * ay));
 }

@@ -1,0 +1,59 @@
+# make run: both wires round the corner. make test: the test suite. Each sets up what it needs in .venv, once.
+
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+RUNS := results/runs
+WIRES := corner90-universal corner90-amplatz
+
+.PHONY: help run test lint format kernels clean
+.DELETE_ON_ERROR:
+
+help:
+	@echo "make run      simulate both wires round the corner and draw them side by side"
+	@echo "make test     run the test suite"
+	@echo "make lint     check style and types"
+	@echo "make format   put the code into its format"
+	@echo "make kernels  build the contact kernel for all platforms"
+	@echo "make clean    remove $(VENV) and caches (results stay)"
+
+run: $(VENV)/.ready
+	$(BIN)/gw-exudyn run $(WIRES)
+	@$(BIN)/gw-exudyn plot $(WIRES:%=$(RUNS)/%) --figure insertion > $(RUNS)/figure.txt
+	@echo "Results: $(WIRES:%=$(RUNS)/%)"
+	@echo "Figure:  `grep png $(RUNS)/figure.txt`"
+
+test: $(VENV)/.ready-dev
+	$(BIN)/python -m pytest
+
+lint: $(VENV)/.ready-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+format: $(VENV)/.ready-dev
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+kernels: $(VENV)/.ready-dev
+	$(BIN)/python -m gw_exudyn.model.kernel.build
+
+clean:
+	rm -rf $(VENV) .mypy_cache .pytest_cache .ruff_cache .hypothesis build dist
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(BIN)/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \
+	  echo "Python 3.11 or newer is needed, and '$(PYTHON)' is `$(PYTHON) --version 2>&1 | head -n 1`."; \
+	  echo "Name another one: make $(MAKECMDGOALS) PYTHON=python3.11"; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || { \
+	  echo "Python's venv module is missing; on Debian and Ubuntu: apt-get install python3-venv"; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.ready: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable .
+	@touch $@
+
+$(VENV)/.ready-dev: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@touch $(VENV)/.ready $@
