@@ -19,9 +19,9 @@ help:
 
 run: $(VENV)/.ready
 	$(BIN)/gw-exudyn run $(WIRES)
-	@$(BIN)/gw-exudyn plot $(WIRES:%=$(RUNS)/%) --figure insertion > $(RUNS)/figure.txt
-	@echo "Results: $(WIRES:%=$(RUNS)/%)"
-	@echo "Figure:  `grep png $(RUNS)/figure.txt`"
+	@drawn=`$(BIN)/gw-exudyn plot $(WIRES:%=$(RUNS)/%) --figure insertion` && \
+	  echo "Results: $(WIRES:%=$(RUNS)/%)" && \
+	  echo "Figure:  `echo "$$drawn" | grep png`"
 
 test: $(VENV)/.ready-dev
 	$(BIN)/python -m pytest
@@ -43,6 +43,9 @@ clean:
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(BIN)/python:
+	@command -v $(PYTHON) >/dev/null || { \
+	  echo "'$(PYTHON)' is not there; Python 3.11 or newer is needed."; \
+	  echo "Name another one: make $(MAKECMDGOALS) PYTHON=python3.11"; exit 1; }
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || { \
 	  echo "Python 3.11 or newer is needed, and '$(PYTHON)' is `$(PYTHON) --version 2>&1 | head -n 1`."; \
 	  echo "Name another one: make $(MAKECMDGOALS) PYTHON=python3.11"; exit 1; }

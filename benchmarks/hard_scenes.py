@@ -55,7 +55,18 @@ def main() -> None:
                     ]
                     rows.append(row)
                     print("  ".join(row), flush=True)
-    head = ["scene", "wire", "n", "friction", "status", "time, s", "tip, mm", "push, N", "penetration, um", "cost / bend60"]
+    head = [
+        "scene",
+        "wire",
+        "n",
+        "friction",
+        "status",
+        "time, s",
+        "tip, mm",
+        "push, N",
+        "penetration, um",
+        "cost / bend60",
+    ]
     print("\n" + table(head, rows))
     print(f"\n{total} scenes, {slow} cost more than {MOST:g} times bend60 per simulated second")
 

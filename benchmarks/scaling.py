@@ -1,6 +1,6 @@
 """How cost and memory grow with the number of segments on bend60.
 
-    python benchmarks/scaling.py
+python benchmarks/scaling.py
 """
 
 from __future__ import annotations
@@ -28,7 +28,9 @@ def main() -> None:
         for n in SEGMENTS:
             costs[n] = min(costs[n], run(cases.bend60(n)).cost)
     peaks = {n: _peak_memory(n) for n in SEGMENTS}
-    print(table(["n", "s per s", "peak memory, MB"], [[str(n), f"{costs[n]:.3g}", f"{peaks[n]:.0f}"] for n in SEGMENTS]))
+    print(
+        table(["n", "s per s", "peak memory, MB"], [[str(n), f"{costs[n]:.3g}", f"{peaks[n]:.0f}"] for n in SEGMENTS])
+    )
     exponent = np.polyfit(np.log(SEGMENTS), np.log([costs[n] for n in SEGMENTS]), 1)[0]
     print(f"\nexponent of cost from 100 to 800: {verdict(float(exponent), 1.1)}")
     print(f"peak memory, MB: {verdict(max(peaks.values()), 500)}")

@@ -189,7 +189,7 @@ def software_versions() -> dict[str, str]:
     from importlib.metadata import PackageNotFoundError, version
 
     versions = {"python": platform.python_version()}
-    for package in ("gw-exudyn", "exudyn", "numpy", "scipy", "xarray", "h5netcdf"):
+    for package in ("gw-exudyn", "exudyn", "numpy", "xarray", "h5netcdf"):
         try:
             versions[package] = version(package)
         except PackageNotFoundError:

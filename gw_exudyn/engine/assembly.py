@@ -43,9 +43,9 @@ Jacobian = Callable[[Any, float, int, list[float], list[float], float, float], A
 
 def assemble(model: Model, contact_jacobian: Jacobian) -> System:
     """Build the system at rest in the catheter, the tip at its exit, moving with the drive's first speed."""
+    exu, wire = exudyn(), model.wire
     import exudyn.itemInterface as items
 
-    exu, wire = exudyn(), model.wire
     container = exu.SystemContainer()
     mbs = container.AddSystem()
     reference = reference_places(wire)
@@ -59,7 +59,9 @@ def assemble(model: Model, contact_jacobian: Jacobian) -> System:
         bodies.append(body)
         nodes.append(node)
     for i in range(wire.segments):
-        before, before_node, reach = (bodies[i - 1], nodes[i - 1], wire.lengths[i - 1] / 2) if i else (hub, hub_node, 0.0)
+        before, before_node, reach = (
+            (bodies[i - 1], nodes[i - 1], wire.lengths[i - 1] / 2) if i else (hub, hub_node, 0.0)
+        )
         _joint(mbs, items, wire, i, (before, before_node, float(reach)), (bodies[i], nodes[i]))
     count = 3 * wire.segments
     empty = exu.MatrixContainer()
@@ -94,9 +96,7 @@ def _body(mbs: Any, items: Any, place: Any, mass: float, inertia: float, speed: 
 
 def _guide(mbs: Any, items: Any, hub_node: int) -> int:
     """Hold the hub on the axis without turning; the first constraint, which is returned, places it along the axis."""
-    ground = mbs.AddMarker(
-        items.MarkerNodeCoordinate(nodeNumber=mbs.AddNode(items.NodePointGround()), coordinate=0)
-    )
+    ground = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=mbs.AddNode(items.NodePointGround()), coordinate=0))
     constraints = []
     for coordinate in range(HUB_COORDINATES):
         marker = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=hub_node, coordinate=coordinate))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from gw_exudyn.errors import SolverError
@@ -12,11 +13,12 @@ def exudyn() -> Any:
     try:
         import exudyn as module
     except ImportError as error:
-        text = str(error)
-        if "libGL" in text or "libX11" in text:
+        library = re.search(r"lib(?:GL|X11)[\w.]*", str(error))
+        if library is not None:
             raise SolverError(
-                f"Exudyn needs the system libraries libGL and libX11 ({text}); "
+                f"Exudyn needs the system's libraries libGL and libX11, and {library[0]} is missing; "
                 "on Debian and Ubuntu: apt-get install libgl1 libx11-6"
             ) from error
-        raise SolverError(f"Exudyn cannot be imported ({text}); pip install exudyn") from error
+        reason = " ".join(str(error).split())
+        raise SolverError(f"Exudyn cannot be imported ({reason}); install it again: pip install exudyn") from error
     return module

@@ -24,7 +24,7 @@ _TUNNELLED = 0.5
 _JUMP, _FOLLOWED = 1.5, 2.0
 """A step may move a segment by so many radii, and by so many times the drive's travel, together."""
 
-_HELD_ITERATIONS = 2
+_HELD_ITERATIONS = 1
 """Iterations in which the tangent keeps the stiffness of the contacts at the step's start."""
 
 _ACCEPT, _REFUSE = [0.0, -1.0], [1e9, -1.0]
@@ -80,11 +80,12 @@ class Newton:
             # Exudyn calls this also where SolveSteps begins, at a time that is done.
             if time > self._end:
                 self._end = time
+                self._multipliers = self._data.GetAECoordinates()
                 end_step(time)
             return True
 
         mbs.SetPreStepUserFunction(before_step)
-        mbs.SetPreNewtonResidualUserFunction(self._before_residual)
+        mbs.SetPreNewtonResidualUserFunction(lambda *a: self._before_residual(*a))
         mbs.SetPostNewtonUserFunction(self._after_newton)
         mbs.SetPostStepUserFunction(after_step)
 
@@ -92,6 +93,7 @@ class Newton:
         """Set the contact's motion from Exudyn's coordinates (3 n + 3,) outside of a step; steps after `time`, s, are new."""
         self._move(q, q_t)
         self._end = time
+        self._multipliers = self._data.GetAECoordinates()
 
     def tangent(self, _mbs: Any, _t: float, _item: int, _q: Any, _q_t: Any, factor: float, _factor_t: float) -> Any:
         """Contact's share of the tangent at the place of the last residual. Exudyn wants minus the derivative of the force.
@@ -106,34 +108,62 @@ class Newton:
         return matrix
 
     def _before_residual(self, mbs: Any, _time: float, iteration: int, _outer: int) -> None:
+        """Contact forces and tangent at Newton's present place, after shortening the step that led there."""
         self.residuals += 1
         self.iterations += iteration > 0
-        q = self._data.GetODE2Coordinates()
-        if iteration > 0:
-            q = self._limited(q)
+        data = self._data
+        q, q_t = data.GetODE2Coordinates(), data.GetODE2Coordinates_t()
+        predicted = iteration < _HELD_ITERATIONS
+        if iteration == 0:
+            data.SetAECoordinates(self._multipliers)
+            self._evaluate(q, q_t, predicted)
+        else:
+            q = self._shortened(q, q_t, predicted)
         self._last = q
-        self._move(q, self._data.GetODE2Coordinates_t())
-        self._contact.evaluate(1.0, velocity_factor(self._step), predicted=iteration < _HELD_ITERATIONS)
+        self._add_turning()
         mbs.SetObjectParameter(self._system.contact, "forceVector", self._contact.force.reshape(-1))
+
+    def _evaluate(self, q: Floats, q_t: Floats, predicted: bool) -> None:
+        self._move(q, q_t)
+        self._contact.evaluate(1.0, velocity_factor(self._step), predicted=predicted)
 
     def _move(self, q: Floats, q_t: Floats) -> None:
         places = np.asarray(q)[HUB_COORDINATES:].reshape(-1, 3) + self._system.reference
         self._contact.motion.set(places, np.asarray(q_t)[HUB_COORDINATES:].reshape(-1, 3))
 
-    def _limited(self, q: Floats) -> Floats:
-        """Shorten Newton's last step where it moves a segment too far: place, rate and acceleration together."""
+    def _shortened(self, q: Floats, q_t: Floats, predicted: bool) -> Floats:
+        """Evaluate Newton's new place, or one nearer to the last: no segment moves too far, and a contact that was open no
+        more than closes, so that the next tangent knows of it. Place, rate and acceleration are shortened together."""
         change = q - self._last
         shift = change[HUB_COORDINATES:].reshape(-1, 3)[:, :2]
         largest = max(float(shift.max()), -float(shift.min()))
-        if largest <= self._limit:
-            return q
-        back = (self._limit / largest - 1) * change
-        data, step = self._data, self._step
-        shortened: Floats = q + back
-        data.SetODE2Coordinates(shortened)
-        data.SetODE2Coordinates_t(data.GetODE2Coordinates_t() + velocity_factor(step) * back)
-        data.SetODE2Coordinates_tt(data.GetODE2Coordinates_tt() + acceleration_factor(step) * back)
-        return shortened
+        share = 1.0 if largest <= self._limit else self._limit / largest
+        before = self._contact.gaps()
+        for _ in range(2):
+            back = (share - 1) * change
+            place, rate = q + back, q_t + velocity_factor(self._step) * back
+            self._evaluate(place, rate, predicted)
+            free = self._contact.share_to_touch(before)
+            if free >= 1:
+                break
+            share *= free
+        if share < 1:
+            data = self._data
+            data.SetODE2Coordinates(place)
+            data.SetODE2Coordinates_t(rate)
+            data.SetODE2Coordinates_tt(data.GetODE2Coordinates_tt() + acceleration_factor(self._step) * back)
+        return place
+
+    def _add_turning(self) -> None:
+        """Add to the tangent how the joints' forces turn each segment as it turns, which Exudyn leaves out.
+
+        A segment pushed at both ends resists a turn the less, the larger the push: the term that makes columns buckle.
+        """
+        motion, wire = self._contact.motion, self._contact.wire
+        on_proximal_end = -np.asarray(self._data.GetAECoordinates())[HUB_COORDINATES:].reshape(-1, 2)
+        along = motion.c * on_proximal_end[:, 0] + motion.s * on_proximal_end[:, 1]
+        along[:-1] += motion.c[:-1] * on_proximal_end[1:, 0] + motion.s[:-1] * on_proximal_end[1:, 1]
+        self._contact.tangent[8::9] += wire.lengths / 2 * along
 
     def _after_newton(self, _mbs: Any, _time: float) -> list[float]:
         """Refuse what converged to the wrong thing; the step is then cut."""

@@ -17,6 +17,9 @@ BETA = 0.25 * (GAMMA + 0.5) ** 2
 
 MOST_ITERATIONS = 25
 
+ABSOLUTE_TOLERANCE = 1e-7
+"""Residual, N, that is good enough whatever it was at first: a ten-thousandth of the least force that matters."""
+
 
 def velocity_factor(step: float) -> float:
     """d q_t / d q of the integrator within a step, 1/s."""
@@ -37,6 +40,8 @@ def simulation_settings(step: float, minimum_step: float, tolerance: float) -> A
     integration.initialStepSize = step
     integration.minimumStepSize = min(minimum_step, step)
     integration.adaptiveStep = True
+    # A step that failed is cut to a quarter: what fails at once is mostly a snap, which wants much shorter steps.
+    integration.adaptiveStepDecrease = 0.25
     integration.adaptiveStepRecoverySteps = 2
     integration.verboseMode = 0
     integration.generalizedAlpha.spectralRadius = SPECTRAL_RADIUS
@@ -45,7 +50,7 @@ def simulation_settings(step: float, minimum_step: float, tolerance: float) -> A
     # The contact's tangent is exact and cheap, so full Newton needs fewest residuals.
     integration.newton.useModifiedNewton = False
     integration.newton.relativeTolerance = tolerance
-    integration.newton.absoluteTolerance = 1e-9
+    integration.newton.absoluteTolerance = ABSOLUTE_TOLERANCE
     integration.newton.maxIterations = MOST_ITERATIONS
     # One pass, whose result the checks after Newton may refuse: then the step is cut.
     integration.discontinuous.maxIterations = 1

@@ -90,5 +90,3 @@ def unpack(data: bytes, fingerprint: str) -> dict[str, NDArray[np.generic]]:
         arrays[name] = np.frombuffer(body[place : place + count], kind).reshape(shape).copy()
         place += count
     return arrays
-
-

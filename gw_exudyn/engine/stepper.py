@@ -204,7 +204,9 @@ class Stepper:
         rows = [value for release in self.releases for value in (release.time, release.energy)]
         return np.array([self.steps, self.smallest_step, *self._newton.counts().values(), kept, *rows])
 
-    def set_everything(self, now: State, grid: State | None, taken_over: tuple[float, ...], bookkeeping: Floats) -> None:
+    def set_everything(
+        self, now: State, grid: State | None, taken_over: tuple[float, ...], bookkeeping: Floats
+    ) -> None:
         """Go on from what `state`, `grid_state`, the drive's `taken_over` and `bookkeeping` gave."""
         counts = len(self._newton.counts())
         self.steps, self.smallest_step = int(bookkeeping[0]), float(bookkeeping[1])
@@ -231,7 +233,9 @@ class Stepper:
         multipliers = np.zeros(len(data.GetAECoordinates()))
         instant = snapshot(self.model.wire, self.contact.motion, 0.0, 0.0)
         stored = instant.elastic + instant.kinetic
-        energies = replace(Energies(), elastic=instant.elastic, kinetic=instant.kinetic, start=stored, largest_work=stored)
+        energies = replace(
+            Energies(), elastic=instant.elastic, kinetic=instant.kinetic, start=stored, largest_work=stored
+        )
         return State(0.0, q, q_t, zeros, zeros.copy(), multipliers, self.contact.memory, energies)
 
     def counts(self) -> dict[str, int]:

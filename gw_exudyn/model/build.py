@@ -107,7 +107,7 @@ def build(scenario: Scenario) -> Model:
         _or(scenario.catheter.friction_coefficient, contact.friction_coefficient),
         seam_reach=6 * wire.radius,
     )
-    return Model(scenario, frame, wire, walls, law, drive, outline, tube, width, _warnings(scenario, law, width))
+    return Model(scenario, frame, wire, walls, law, drive, outline, tube, width, _warnings(scenario, wire, width))
 
 
 def contact_law(scenario: Scenario, width: float) -> ContactLaw:
@@ -129,8 +129,10 @@ def automatic_stiffness(scenario: Scenario, width: float) -> float:
 
 
 def estimated_force(scenario: Scenario, width: float) -> float:
-    """Force, N, of the wire's distal part in a bend as tight as its lumen is wide: EI / (2 R^2), the push force of a rod in
-    a circular channel of radius R."""
+    """Force, N, of the wire's distal part in a bend as tight as its lumen is wide.
+
+    EI / (2 R^2), the push force of a rod in a circular channel of radius R.
+    """
     stiffness = mean_stiffness(scenario.wire.bending_stiffness, 5 * width)
     return stiffness / (2 * width**2)
 
@@ -146,16 +148,30 @@ def width_at_exit(outline: Outline) -> float:
     return float(above.min() - below.max()) if len(above) and len(below) else 0.0
 
 
-def _warnings(scenario: Scenario, law: ContactLaw, width: float) -> tuple[str, ...]:
+def _warnings(scenario: Scenario, wire: Wire, width: float) -> tuple[str, ...]:
+    return tuple([*_too_soft(scenario, width), *_too_coarse(scenario, wire)])
+
+
+def _too_soft(scenario: Scenario, width: float) -> list[str]:
     automatic = automatic_stiffness(scenario, width)
     given = scenario.contact.wall_stiffness
     if given is None or given >= automatic / 5:
-        return ()
+        return []
     sinks = estimated_force(scenario, width) / given / (scenario.wire.diameter / 2)
-    return (
-        f"contact.wall_stiffness: {given:.6g} N/m lets the wire sink into the walls by about {100 * sinks:.0f} % of its radius; "
-        f"auto would take {automatic:.3g} N/m",
-    )
+    return [
+        f"contact.wall_stiffness: {given:.6g} N/m lets the wire sink into the walls by about "
+        f"{100 * sinks:.0f} % of its radius; auto would take {automatic:.3g} N/m"
+    ]
+
+
+def _too_coarse(scenario: Scenario, wire: Wire) -> list[str]:
+    shape, last = scenario.wire.tip_shape.length, float(wire.lengths[-1])
+    if shape is None or shape >= last * (1 - 1e-9):
+        return []
+    return [
+        f"wire.tip_shape: {shape * 1e3:.6g} mm is shorter than the last segment, {last * 1e3:.6g} mm, and is lost in "
+        "part or whole; take more wire.segments, or a wire.grading above 1"
+    ]
 
 
 def _or(value: float | None, otherwise: float) -> float:

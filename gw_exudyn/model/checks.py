@@ -20,6 +20,9 @@ Floats = NDArray[np.float64]
 _JUST_AHEAD = 1e-6
 """How far past the exit, m, the lumen is looked at."""
 
+_STEP = 1e-6
+"""By how much, m, a wall may stand inside the bore at the exit: far less than the wire notices."""
+
 
 def check(scenario: Scenario, outline: Outline, tube: Tube, drive: Drive) -> None:
     """Raise ScenarioError with everything that keeps this wire from starting in this vessel.
@@ -51,14 +54,24 @@ def _exit(scenario: Scenario, outline: Outline, tube: Tube) -> list[Problem]:
             "move it inside, or turn catheter.direction so that it points into the vessel"
         )
         return [scenario.problem("catheter.exit", text)]
-    room = min((distance(points, closed) for points, closed in vessel_polylines(outline, tube)), default=np.inf)
-    if room >= scenario.wire.diameter / 2:
+    lines, radius = vessel_polylines(outline, tube), scenario.wire.diameter / 2
+    room = min((distance(points, closed) for points, closed in lines), default=np.inf)
+    if room < radius:
+        text = (
+            f"leaves {_mm(room)} to the nearest wall of the vessel, less than the wire's radius {_mm(radius)}; "
+            "move it away from the wall, or take a thinner wire"
+        )
+        return [scenario.problem("catheter.exit", text)]
+    # A wall that begins inside the mouth: the wire could leave the bore on the wall's outside.
+    ends = [end for points, closed in lines if not closed for end in (points[0], points[-1])]
+    inside = [abs(float(y)) for x, y in ends if abs(x) < _STEP and abs(y) < tube.bore / 2 - _STEP]
+    if not inside:
         return []
     text = (
-        f"leaves {_mm(room)} to the nearest wall of the vessel, less than the wire's radius {_mm(scenario.wire.diameter / 2)}; "
-        "move it away from the wall, or take a thinner wire"
+        f"{_mm(tube.bore)} is wider than the lumen at the exit, where a wall of the vessel stands {_mm(min(inside))} from "
+        "the catheter's axis; take a narrower bore, or move catheter.exit further into the lumen"
     )
-    return [scenario.problem("catheter.exit", text)]
+    return [scenario.problem("catheter.bore", text)]
 
 
 def _travel(scenario: Scenario, drive: Drive) -> list[Problem]:

@@ -111,6 +111,20 @@ class Contact:
         self.motion.struct.predicted = int(predicted)
         self._kernel.evaluate(self.motion, self.nodes, self.corners, position, velocity)
 
+    def gaps(self) -> tuple[Floats, Floats]:
+        """Gaps, m, of the node and the corner pairs at the last `evaluate`."""
+        return self.nodes.gap.copy(), self.corners.gap.copy()
+
+    def share_to_touch(self, before: tuple[Floats, Floats]) -> float:
+        """Share, 0 to 1, of the way from the place of `before` (its `gaps`) to the present one at which the first contact that
+        was open then just closes."""
+        share = 1.0
+        for pairs, gap in zip((self.nodes, self.corners), before, strict=True):
+            closes = (gap >= self.law.toe) & (pairs.gap < -self.law.toe) & (pairs.weight > _HALF_WAY)
+            if closes.any():
+                share = min(share, float((gap[closes] / (gap[closes] - pairs.gap[closes])).min()))
+        return share
+
     def accept(self) -> None:
         """Take the present place, just evaluated, as the end of the step: keep slips, stiffness shares and sides."""
         nodes, corners, walls = self.nodes, self.corners, self.walls

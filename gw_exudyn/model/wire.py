@@ -61,7 +61,8 @@ class Wire:
 def build_wire(spec: WireSpec) -> Wire:
     """The chain for a wire of a scenario."""
     lengths = segment_lengths(spec.length, spec.segments, spec.grading)
-    nodes = np.concatenate([np.cumsum(lengths[::-1])[::-1], [0.0]])
+    nodes = np.concatenate([[0.0], np.cumsum(lengths[::-1])])[::-1].copy()
+    nodes[0] = spec.length  # without the sum's rounding: the clamp's stretch ends where stiffness and tip shape may
     far, near = joint_regions(nodes)
     stiffness = 1 / compliance(spec.bending_stiffness, near, far)
     radius = spec.diameter / 2

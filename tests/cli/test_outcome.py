@@ -27,6 +27,12 @@ ENDINGS = [
     (ModuleNotFoundError("No module named 'gw_exudyn.lost'", name="gw_exudyn.lost"), 1),
 ]
 
+WHAT_EXUDYN_SAYS = """\
+Exudyn could not import its compiled module. Tried, in order:
+  .exudynCPP  ->  libGL.so.1: cannot open shared object file: No such file or directory
+  exudynCPP  ->  No module named 'exudynCPP'
+Check that the wheel matches this Python version and platform, or reinstall."""
+
 
 @pytest.mark.parametrize(("error", "code"), ENDINGS, ids=lambda value: type(value).__name__)
 def test_every_error_has_its_exit_code_and_a_sentence(error, code, capsys):
@@ -59,10 +65,10 @@ def test_a_bug_leaves_its_traceback_in_a_file(capsys, monkeypatch, tmp_path):
 def test_a_missing_system_library_names_the_packages(gw, monkeypatch):
     real = builtins.__import__
 
-    def without_gl(name, *further):
+    def without_gl(name, *further, **named):
         if name.split(".")[0] == "exudyn":
-            raise ImportError("libGL.so.1: cannot open shared object file: No such file or directory")
-        return real(name, *further)
+            raise ImportError(WHAT_EXUDYN_SAYS)
+        return real(name, *further, **named)
 
     monkeypatch.setattr(builtins, "__import__", without_gl)
     found = gw("run", "straight", "-q")

@@ -71,7 +71,11 @@ def test_the_branch_is_the_side_of_the_apex_on_which_the_tip_passes(segments: in
 
 def test_pulled_back_over_an_apex_the_wire_may_take_the_other_branch() -> None:
     """The side is undone when the tip comes back: pushed again with the other curvature, the same corner is passed anew."""
-    phases = [{"speed": 2e-3, "distance": 0.022}, {"speed": -2e-3, "distance": 0.016}, {"speed": 2e-3, "distance": 0.016}]
+    phases = [
+        {"speed": 2e-3, "distance": 0.022},
+        {"speed": -2e-3, "distance": 0.016},
+        {"speed": 2e-3, "distance": 0.016},
+    ]
     result = simulate(scenario(vessel=carina(-0.3e-3), drive={"kind": "speed", "phases": phases}))
     assert_trusted(result)
     first, last = np.searchsorted(result.time, 11.0), -1
@@ -84,9 +88,7 @@ def test_pulled_back_over_an_apex_the_wire_may_take_the_other_branch() -> None:
 def test_a_corner_passed_and_passed_again_on_pull_back(segments: int) -> None:
     """In and out round a corner of 60 degrees: no tunnelling, the push turns into a pull, and the end is the start."""
     phases = [{"speed": 2e-3, "distance": 0.030}, {"speed": 0.0, "duration": 1.0}, {"speed": -2e-3, "distance": 0.030}]
-    result = simulate(
-        scenario(vessel=bend(60), wire={"segments": segments}, drive={"kind": "speed", "phases": phases})
-    )
+    result = simulate(scenario(vessel=bend(60), wire={"segments": segments}, drive={"kind": "speed", "phases": phases}))
     assert_trusted(result)
     push, wall_x = result.values("push_force"), result.values("wall_force_x")
     going_in, holding, coming_out = (np.searchsorted(result.time, t) for t in (14.5, 15.9, 17.0))
