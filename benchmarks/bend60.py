@@ -3,8 +3,8 @@
     python benchmarks/bend60.py            (MuJoCo: pip install "gw-exudyn[peers]")
     python benchmarks/bend60.py --no-mujoco
 
-The converged answer, tip (9.542, 12.892) mm and push force 0.0207 N at t = 10 s, is that of an independent solver of the
-same mechanics (massless rigid segments, implicit Euler, minimal coordinates) with 400 segments and more.
+The converged answer, tip (9.542, 12.892) mm and push force 0.0207 N at t = 10 s, is that of an independent solver of
+the same mechanics (massless rigid segments, implicit Euler, minimal coordinates) with 400 segments and more.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
     python benchmarks/hard_scenes.py [--segments 20 100 400] [--only "corner 90"]
 
-Each scene ends, or is stopped by a status that names the reason. A wire that is pushed square against a wall with much friction
-jams in earnest, and short rigid segments jam sooner.
+Each scene ends, or is stopped by a status that names the reason. A wire that is pushed square against a wall with much
+friction jams in earnest, and short rigid segments jam sooner.
 """
 
 from __future__ import annotations

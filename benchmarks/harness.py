@@ -19,7 +19,8 @@ from gw_exudyn.simulation import Simulation
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a case went. tip : mm. deepest : micrometres over all nominal steps. cost : clock seconds per simulated second."""
+    """How a case went. tip : mm. deepest : micrometres over all nominal steps. cost : clock seconds per simulated
+    second."""
 
     status: StatusReport
     reached: float
@@ -31,8 +32,8 @@ class Outcome:
 
 
 def run(case: dict[str, Any], repeat: int = 1) -> Outcome:
-    """Run a case to its end or failure; of several runs the fastest counts, the result is the same. Time of the solution alone,
-    in one thread."""
+    """Run a case to its end or failure; of several runs the fastest counts, the result is the same. Time of the
+    solution alone, in one thread."""
     simulation = Simulation(scenario_from_dict(case))
     step, best = simulation.scenario.solver.step, np.inf
     for _ in range(repeat):

@@ -2,7 +2,8 @@
 
     python benchmarks/head_on.py
 
-The default rest curvature, a tenth and ten times of it: same branch, tips within 0.1 mm. And how far it moves bend60's tip.
+The default rest curvature, a tenth and ten times of it: same branch, tips within 0.1 mm. And how far it moves bend60's
+tip.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """bend60 in MuJoCo, as a peer to measure beside: what it costs, not what it answers.
 
-The chain's joints get an artificial inertia k tau^2 and a damper 2 k tau, because at the wire's real inertia the bending waves
-would ask for steps of microseconds; the walls are boxes; friction 0.4 in elliptic cones; 2 ms steps, implicit-fast, Newton.
+The chain's joints get an artificial inertia k tau^2 and a damper 2 k tau, because at the wire's real inertia the
+bending waves would ask for steps of microseconds; the walls are boxes; friction 0.4 in elliptic cones; 2 ms steps,
+implicit-fast, Newton.
 """
 
 from __future__ import annotations
@@ -52,7 +53,8 @@ def _xml(segments: int) -> str:
 <size memory="1G"/>
 <default>
   <default class="wall"><geom type="box" contype="0" conaffinity="1" {contact}/></default>
-  <default class="wire"><geom type="capsule" size="{RADIUS:g}" density="{DENSITY:g}" contype="1" conaffinity="0" {contact}/></default>
+  <default class="wire"><geom type="capsule" size="{RADIUS:g}" density="{DENSITY:g}" contype="1" conaffinity="0"
+  {contact}/></default>
 </default>
 <worldbody>{_walls()}{chain}{close}</worldbody>
 <actuator><position joint="push" kp="2000" kv="25"/></actuator></mujoco>"""

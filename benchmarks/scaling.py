@@ -23,7 +23,7 @@ def main() -> None:
     """Print the table and the exponent."""
     print(machine())
     # Interleaved, so that a machine that changes its speed does not tilt the exponent; the fastest of each counts.
-    costs = {n: np.inf for n in SEGMENTS}
+    costs = dict.fromkeys(SEGMENTS, np.inf)
     for _ in range(3):
         for n in SEGMENTS:
             costs[n] = min(costs[n], run(cases.bend60(n)).cost)

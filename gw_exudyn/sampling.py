@@ -50,8 +50,8 @@ def _place(stepper: Stepper) -> dict[str, Any]:
 
 
 def contact_points(stepper: Stepper) -> dict[str, Floats]:
-    """The contacts that carry a force, (c,) each: the table's contact fields, and `force` (c, 2), N, of the wire on the wall
-    in the plane, and `at_tip` (c,) bool, on the tip's disc."""
+    """The contacts that carry a force, (c,) each: the table's contact fields, and `force` (c, 2), N, of the wire on
+    the wall in the plane, and `at_tip` (c,) bool, on the tip's disc."""
     nodes, corners = _node_contacts(stepper), _corner_contacts(stepper)
     joined = {name: np.concatenate([nodes[name], corners[name]]) for name in nodes}
     points = stepper.model.frame.points_out(joined.pop("point"))
@@ -99,7 +99,10 @@ def _corner_contacts(stepper: Stepper) -> dict[str, Floats]:
     direction = away / np.maximum(np.hypot(*away.T), 1e-300)[:, None]
     past_tip = (body == wire.segments - 1) & ((offset * along).sum(axis=1) > half)
     pressed, dragged = _shares(pairs, live)
-    on_wire = -pressed[:, None] * direction + dragged[:, None] * along
+    # The wire slides across the direction to the corner, towards its tip.
+    across = np.column_stack([direction[:, 1], -direction[:, 0]])
+    across *= np.where((across * along).sum(axis=1) < 0, -1.0, 1.0)[:, None]
+    on_wire = -pressed[:, None] * direction + dragged[:, None] * across
     return {
         "point": place,
         "contact_arc_length": wire.node_arc_length[body + 1] + half - beside,

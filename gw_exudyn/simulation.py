@@ -78,15 +78,17 @@ class Simulation:
 
     @property
     def outputs(self) -> Mapping[str, Any]:
-        """Every quantity of the table of quantities at the time reached: floats, and arrays over nodes, joints and contacts."""
+        """Every quantity of the table of quantities at the time reached: floats, and arrays over nodes, joints and
+        contacts."""
         return MappingProxyType(sample(self._stepper))
 
     def step(self, dt: float, *, speed: float | None = None) -> Mapping[str, Any]:
         """Go on by dt and return the outputs there.
 
-        dt : s, positive; any length, it need not fit the solver's step: results do not depend on how time is cut into calls.
-        speed : m/s of the drive from now on, positive into the vessel; None keeps what drives it now (at first the scenario's
-            own drive).
+        dt : s, positive; any length, it need not fit the solver's step: results do not depend on how time is cut into
+            calls.
+        speed : m/s of the drive from now on, positive into the vessel; None keeps what drives it now (at first the
+            scenario's own drive).
 
         When the run cannot go on, it ends early: `status` then says why, and `outputs` are those of the last good step.
         Raises UsageError for a step that is not positive, a speed that is no number, or a run that has failed before.
@@ -100,7 +102,8 @@ class Simulation:
         return self.outputs
 
     def advance(self, target: float) -> bool:
-        """Run to the time `target`, s; False when the run failed on the way (see `status`). Raises UsageError after that."""
+        """Run to the time `target`, s; False when the run failed on the way (see `status`). Raises UsageError after
+        that."""
         if self._stopped is not None:
             raise UsageError(f"the run has ended: {self._stopped.sentence()} Reset it, or restore an earlier state.")
         step = self.scenario.solver.step
@@ -121,7 +124,8 @@ class Simulation:
             stepper.take_over(speed)
 
     def get_state(self) -> bytes:
-        """The whole state: a simulation of the same scenario that restores it goes on bit for bit, also in another process.
+        """The whole state: a simulation of the same scenario that restores it goes on bit for bit, also in another
+        process.
 
         At a time between two solver steps the state holds both that instant and the step's start.
         """
@@ -135,8 +139,8 @@ class Simulation:
         return pack(arrays, self._fingerprint())
 
     def set_state(self, state: bytes) -> None:
-        """Go on from a state. Raises UsageError for bytes that are none, damaged, or of another scenario; the simulation then
-        stays as it was."""
+        """Go on from a state. Raises UsageError for bytes that are none, damaged, or of another scenario; the
+        simulation then stays as it was."""
         arrays = unpack(state, self._fingerprint())
         drive = tuple(float(x) for x in arrays.pop("drive"))
         counts = arrays.pop("counts")
@@ -145,7 +149,7 @@ class Simulation:
             part, _, rest = name.partition(".")
             parts[part][rest] = array
         grid = from_arrays(parts["grid"]) if parts["grid"] else None
-        self._stepper.set_everything(from_arrays(parts["now"]), grid, drive, counts)
+        self._stepper.set_everything(from_arrays(parts["now"]), grid, drive, counts.astype(np.float64))
         self._stopped = None
 
     def _fingerprint(self) -> str:
@@ -178,11 +182,12 @@ def simulate(
 ) -> Result:
     """Run a scenario to the end of its drive.
 
-    progress : called after each output interval. should_stop : asked there; True ends the run with the status STOPPED, and so
+    progress : called after each output interval. should_stop : asked there; True ends the run with the status STOPPED,
+        and so
         does Ctrl-C (KeyboardInterrupt) at any time. What was computed until then is in the result.
 
-    A run that cannot go on or cannot be trusted ends with a status that says why; it raises nothing. Raises ScenarioError for
-    a scenario that cannot start.
+    A run that cannot go on or cannot be trusted ends with a status that says why; it raises nothing. Raises
+    ScenarioError for a scenario that cannot start.
     """
     simulation = Simulation(scenario)
     samples = [dict(simulation.outputs)]

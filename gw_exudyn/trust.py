@@ -14,7 +14,8 @@ OPEN_ENERGY = 0.01
 """Largest trusted energy error over the largest work."""
 
 ENERGY_FLOOR = 1e-7
-"""Works below this, J, are too small for the energy check: bending the tip of a soft guidewire by five degrees takes as much."""
+"""Works below this, J, are too small for the energy check: bending the tip of a soft guidewire by five degrees takes
+as much."""
 
 SNAP_SHARE = 0.02
 """A solver step that loses more than this share of the largest work to the integrator is a snap-through."""
@@ -48,7 +49,8 @@ def energy_report(stepper: Stepper) -> StatusReport | None:
 
 
 def snap_events(stepper: Stepper) -> list[SnapEvent]:
-    """Snap-throughs of the run so far: runs of solver steps that each lost much at once, with the energy they set free."""
+    """Snap-throughs of the run so far: runs of solver steps that each lost much at once, with the energy they set
+    free."""
     least = max(SNAP_SHARE * stepper.energies.largest_work, ENERGY_FLOOR)
     step = stepper.model.scenario.solver.step
     events: list[SnapEvent] = []

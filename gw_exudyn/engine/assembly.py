@@ -1,6 +1,7 @@
 """The multibody system in Exudyn: a hub on the catheter's axis, rigid segments, revolute joints, torsional springs.
 
-Coordinates in their global order: the hub's (x, y, angle), then those of segments 0 to n - 1. All in the catheter's frame.
+Coordinates in their global order: the hub's (x, y, angle), then those of segments 0 to n - 1. All in the catheter's
+frame.
 """
 
 from __future__ import annotations
@@ -25,9 +26,9 @@ HUB_COORDINATES = 3
 class System:
     """The assembled system and what the stepping needs to know of it.
 
-    reference : (n, 3), place of the centres (m) and angles (rad) of the segments at the start; Exudyn's coordinates count
-        from there. hub_mass : kg. drive : the constraint that places the hub. contact : the object that carries the
-        contact forces of all segments.
+    reference : (n, 3), place of the centres (m) and angles (rad) of the segments at the start; Exudyn's coordinates
+        count from there.
+    hub_mass : kg. drive : the constraint that places the hub. contact : the object that carries the contact forces.
     """
 
     container: Any
@@ -44,7 +45,7 @@ Jacobian = Callable[[Any, float, int, list[float], list[float], float, float], A
 def assemble(model: Model, contact_jacobian: Jacobian) -> System:
     """Build the system at rest in the catheter, the tip at its exit, moving with the drive's first speed."""
     exu, wire = exudyn(), model.wire
-    import exudyn.itemInterface as items
+    import exudyn.itemInterface as items  # noqa: N813
 
     container = exu.SystemContainer()
     mbs = container.AddSystem()
@@ -73,7 +74,7 @@ def assemble(model: Model, contact_jacobian: Jacobian) -> System:
             stiffnessMatrix=empty,
             dampingMatrix=empty,
             forceVector=np.zeros(count),
-            jacobianUserFunction=contact_jacobian,
+            jacobianUserFunction=contact_jacobian,  # type: ignore[arg-type]
         )
     )
     mbs.Assemble()

@@ -16,7 +16,8 @@ from gw_exudyn.model.contact import Contact
 Floats = NDArray[np.float64]
 
 _LIMIT = 0.75
-"""Largest move of a segment in one Newton step, in radii of the wire. With the signed gap it keeps corners on their side."""
+"""Largest move of a segment in one Newton step, in radii of the wire. With the signed gap it keeps corners on their
+side."""
 
 _TUNNELLED = 0.5
 """Penetration, in radii, that one step may not reach from less than the trusted depth."""
@@ -69,7 +70,8 @@ class Newton:
         self._data = system.mbs.systemData
 
     def install(self, start_trial: Callable[[float], tuple[float, float]], end_step: Callable[[float], None]) -> None:
-        """Hand the callbacks to Exudyn. start_trial(end) -> (step, s; travel of the drive in it, m); end_step(time) for each accepted step."""
+        """Hand the callbacks to Exudyn. start_trial(end) -> (step, s; travel of the drive in it, m); end_step(time)
+        for each accepted step."""
         mbs = self._system.mbs
 
         def before_step(_: Any, time: float) -> bool:
@@ -90,13 +92,15 @@ class Newton:
         mbs.SetPostStepUserFunction(after_step)
 
     def look(self, q: Floats, q_t: Floats, time: float) -> None:
-        """Set the contact's motion from Exudyn's coordinates (3 n + 3,) outside of a step; steps after `time`, s, are new."""
+        """Set the contact's motion from Exudyn's coordinates (3 n + 3,) outside of a step; steps after `time`, s, are
+        new."""
         self._move(q, q_t)
         self._end = time
         self._multipliers = self._data.GetAECoordinates()
 
     def tangent(self, _mbs: Any, _t: float, _item: int, _q: Any, _q_t: Any, factor: float, _factor_t: float) -> Any:
-        """Contact's share of the tangent at the place of the last residual. Exudyn wants minus the derivative of the force.
+        """Contact's share of the tangent at the place of the last residual. Exudyn wants minus the derivative of the
+        force.
 
         Position and velocity parts were joined with the ratio of the two factors, which the integrator fixes.
         """
@@ -132,8 +136,9 @@ class Newton:
         self._contact.motion.set(places, np.asarray(q_t)[HUB_COORDINATES:].reshape(-1, 3))
 
     def _shortened(self, q: Floats, q_t: Floats, predicted: bool) -> Floats:
-        """Evaluate Newton's new place, or one nearer to the last: no segment moves too far, and a contact that was open no
-        more than closes, so that the next tangent knows of it. Place, rate and acceleration are shortened together."""
+        """Evaluate Newton's new place, or one nearer to the last: no segment moves too far, and a contact that was
+        open no more than closes, so that the next tangent knows of it. Place, rate and acceleration are shortened
+        together."""
         change = q - self._last
         shift = change[HUB_COORDINATES:].reshape(-1, 3)[:, :2]
         largest = max(float(shift.max()), -float(shift.min()))
@@ -172,7 +177,8 @@ class Newton:
         return _REFUSE if wrong else _ACCEPT
 
     def _jumped(self) -> bool:
-        """A segment moved much further than the drive: the step skipped a snap-through, whose branch only short steps find."""
+        """A segment moved much further than the drive: the step skipped a snap-through, whose branch only short steps
+        find."""
         motion = self._contact.motion
         moved = float(np.abs(motion.q[:, :2] - motion.q0[:, :2]).max())
         return moved > _JUMP * self._contact.wire.radius + _FOLLOWED * abs(self._travel)

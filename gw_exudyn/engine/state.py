@@ -24,8 +24,8 @@ _VERSION = 1
 class State:
     """Everything that the further course depends on, and the sums kept so far.
 
-    time : s. q, q_t, q_tt, algorithmic : (3 n + 3,), Exudyn's coordinates, rates, accelerations, and the integrator's own
-        accelerations. multipliers : constraint forces. contact : its memory. energies : sums since the start.
+    time : s. q, q_t, q_tt, algorithmic : (3 n + 3,), Exudyn's coordinates, rates, accelerations, and the integrator's
+        own accelerations. multipliers : constraint forces. contact : its memory. energies : sums since the start.
     """
 
     time: float
@@ -52,7 +52,7 @@ def to_arrays(state: State) -> dict[str, NDArray[np.generic]]:
 
 def from_arrays(arrays: dict[str, NDArray[np.generic]]) -> State:
     """The state again."""
-    energies = Energies(*(float(x) for x in arrays["energies"]))  # type: ignore[arg-type]
+    energies = Energies(*(float(x) for x in arrays["energies"]))
     contact = ContactMemory(**{f.name: arrays[f"contact.{f.name}"] for f in fields(ContactMemory)})  # type: ignore[arg-type]
     plain = {name: arrays[name] for name in _ARRAYS}
     return State(time=float(arrays["time"][0]), contact=contact, energies=energies, **plain)  # type: ignore[arg-type]

@@ -1,14 +1,15 @@
 """Stepping of the Exudyn system by one solver that lives through the run.
 
 Time runs on a grid of nominal steps that begins at zero. A step that does not converge, or whose result the checks
-refuse, is cut back, and ends at the next grid time all the same. A stop between two grid times is a step of its own that
-is taken back before the run goes on, so that results do not depend on how time is cut into calls.
+refuse, is cut back, and ends at the next grid time all the same. A stop between two grid times is a step of its own
+that is taken back before the run goes on, so that results do not depend on how time is cut into calls.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -53,6 +54,12 @@ class Stepper:
         self._newton.install(self._start_trial, self._end_step)
         if not self._solver.InitializeSolver(self.system.mbs, self._settings):
             raise SolverError("Exudyn refused to initialise its solver for this model")
+        self._time = 0.0
+        self._grid: tuple[State, int] | None = None
+        self._instant: Snapshot = snapshot(model.wire, self.contact.motion, 0.0, 0.0)
+        self.energies = Energies()
+        self.releases: list[Release] = []
+        self.steps, self.smallest_step = 0, math.inf
         self._initial = self._first_state()
         self.reset()
 
@@ -61,8 +68,8 @@ class Stepper:
         self.drive = self.model.drive
         self.steps, self.smallest_step = 0, math.inf
         self._newton.reset_counts()
-        self.releases: list[Release] = []
-        self._grid: tuple[State, int] | None = None
+        self.releases = []
+        self._grid = None
         self.restore(self._initial)
 
     @property
@@ -71,7 +78,8 @@ class Stepper:
         return self._time
 
     def advance(self, target: float) -> bool:
-        """Run to the time `target`, s; False where the solver finds no way on (the time reached is then the last good one).
+        """Run to the time `target`, s; False where the solver finds no way on (the time reached is then the last good
+        one).
 
         Ctrl-C raises KeyboardInterrupt; the state is then that of the last step taken.
         """
@@ -117,7 +125,8 @@ class Stepper:
         return max(abs(self.drive.speed_at(self._time)), abs(self.drive.speed_at(end)))
 
     def _start_trial(self, end: float) -> tuple[float, float]:
-        """Exudyn begins a (perhaps repeated) step that ends at `end`: place the hub. Returns the step, s, and the travel, m."""
+        """Exudyn begins a (perhaps repeated) step that ends at `end`: place the hub. Returns the step, s, and the
+        travel, m."""
         position = self.drive.position_at(end)
         self.system.mbs.SetObjectParameter(self.system.drive, "offset", position)
         return end - self._time, position - self._instant.travel
@@ -223,7 +232,6 @@ class Stepper:
     def _first_state(self) -> State:
         """At rest in the catheter; corners beside the wire from the start (its own lips) know their side."""
         data = self.system.mbs.systemData
-        self._time = 0.0
         q, q_t = np.array(data.GetODE2Coordinates()), np.array(data.GetODE2Coordinates_t())
         self._newton.look(q, q_t, 0.0)
         self.contact.start_step()

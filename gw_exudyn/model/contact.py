@@ -209,7 +209,7 @@ def _numbers(wire: Wire, law: ContactLaw) -> dict[str, float]:
 
 def _arrays(wire: Wire, walls: Walls) -> dict[str, NDArray[np.generic]]:
     half = wire.lengths / 2
-    blend = np.minimum(wire.radius / 2, half / 2)
+    blend = np.minimum(wire.radius / 10, half / 2)
     blend[:-1] = np.minimum(blend[:-1], blend[1:])
     return {
         "half_length": half,

@@ -88,13 +88,13 @@ def at_rest(wire: Wire, walls: Walls, q: Floats, law: ContactLaw = LAW) -> Conta
     """A contact whose step begins at the place q, (n, 3), with the sides of its corners decided there."""
     contact = Contact(wire, walls, law)
     contact.motion.set(q, np.zeros_like(q))
+    contact.start_step()
     settle(contact)
     return contact
 
 
 def settle(contact: Contact) -> None:
-    """Accept the present place as a step's end and begin the next one there."""
-    contact.start_step()
+    """Accept the present place as the end of the step, and begin the next one there."""
     contact.evaluate()
     contact.accept()
     contact.start_step()

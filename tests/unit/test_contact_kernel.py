@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from model_cases import LAW, RADIUS, at_rest, bare_walls, chain, force_at, plain_wire
 
-from gw_exudyn.model.contact import Contact
+from gw_exudyn.model.contact import Contact, _arrays
 
 HALF = 1e-3
 SCALE = np.array([1.0, 1.0, 1 / HALF])
@@ -52,9 +52,9 @@ def differences(contact, q, v, *, of_rate):
 
 def assert_tangent_is_exact(contact, q, v, touching):
     """Over the place at rest, and over the rate in motion; in motion the tangent leaves out how the rate of the gap
-    changes with the place, which is damping * penetration * (a rate of 1/s) beside the stiffness: below 1e-4."""
+    changes with the place: damping * penetration * (1/s by turning, 6/s round the wire's end) beside the stiffness."""
     rest = np.zeros_like(q)
-    for rate, of_rate, tolerance in ((rest, False, TOLERANCE), (v, True, TOLERANCE), (v, False, 1e-4)):
+    for rate, of_rate, tolerance in ((rest, False, TOLERANCE), (v, True, TOLERANCE), (v, False, 1e-3)):
         expected = differences(contact, q, rate, of_rate=of_rate)
         found = blocks(contact, q, rate, float(not of_rate), float(of_rate))
         assert {int(b) for b in np.flatnonzero(abs(expected).max(axis=(1, 2)))} == touching
@@ -75,7 +75,7 @@ def slid(contact, q, along, ratio):
 
 # --- node discs on walls
 
-WALL = ((0.0, 0.0), (6e-3, 4.5e-3))
+WALL = ((2e-3, 0.0), (8e-3, 4.5e-3))
 ALONG = np.array([0.8, 0.6])
 INTO_LUMEN = np.array([-0.6, 0.8])
 GAPS = {"onset": 0.4 * LAW.toe, "toe": -0.4 * LAW.toe, "deep": -3 * LAW.toe}
@@ -84,7 +84,7 @@ PLACES = {"middle": 3e-3, "fades in": 0.03e-3, "fades out": 7.5e-3 - 0.05e-3}
 
 def disc_at(along, gap, angle):
     """One segment, (1, 3), whose distal end is `along` the wall and `gap` off it."""
-    place = along * ALONG + (RADIUS + gap) * INTO_LUMEN
+    place = np.array(WALL[0]) + along * ALONG + (RADIUS + gap) * INTO_LUMEN
     centre = place - HALF * np.array([math.cos(angle), math.sin(angle)])
     return np.array([[*centre, angle]])
 
@@ -118,15 +118,21 @@ def test_the_tangent_in_a_pocket_where_two_walls_hold_one_disc():
 KINK = 0.4
 HELD = RADIUS - 0.5 * LAW.toe
 """Distance of the corner from the wire's axis."""
+BLEND = float(_arrays(plain_wire(np.full(4, 2 * HALF)), bare_walls(corners=[(0, 0)]))["joint_blend"][1])
+"""Half width, m, of the hand-over between two segments."""
 CORNERS = {
     # kink of the joint distal to segment 1; (x, y) of the corner seen from that segment; segments that it touches
     "beside": (0.0, (0.3 * HALF, HELD), {1}),
     "beside, right": (0.0, (-0.4 * HALF, -HELD), {1}),
-    "hand-over at a straight joint": (0.0, (HALF + 0.03e-3, HELD), {1, 2}),
-    "hand-over in a bend round the corner": (KINK, (HALF - HELD * math.tan(KINK / 2) - 0.02e-3, HELD), {1, 2}),
+    "hand-over at a straight joint": (0.0, (HALF + 0.3 * BLEND, HELD), {1, 2}),
+    "hand-over in a bend round the corner": (KINK, (HALF - HELD * math.tan(KINK / 2) - 0.2 * BLEND, HELD), {1, 2}),
     "round end on the bisector": (-KINK, (HALF + HELD * math.sin(KINK / 2), HELD * math.cos(KINK / 2)), {1, 2}),
-    "round end off the bisector": (-KINK, (HALF + HELD * math.sin(0.05), HELD * math.cos(0.05)), {1, 2}),
-    "round end, right": (KINK, (HALF + HELD * math.sin(0.3), -HELD * math.cos(0.3)), {1, 2}),
+    "round end off the bisector": (
+        -KINK,
+        (HALF + HELD * math.sin(KINK / 2 - 0.3 * BLEND / HELD), HELD * math.cos(KINK / 2 - 0.3 * BLEND / HELD)),
+        {1, 2},
+    ),
+    "round end, right": (KINK, (HALF + HELD * math.sin(KINK / 2 + 0.02), -HELD * math.cos(KINK / 2 + 0.02)), {1, 2}),
 }
 
 
@@ -190,22 +196,24 @@ def sliding_past(q, side, count):
     """Points at distance HELD from the axis of segments 1 and 2: beside the one, round the joint or through the notch,
     beside the other."""
     kink = q[2, 2] - q[1, 2]
-    notch = max(0.0, side * kink / 2)
-    back = HALF - HELD * math.tan(notch)
-    for t in np.linspace(-1, 1, count):
-        if abs(t) > 0.3 or side * kink >= 0:
-            segment, sign = (q[1], 1) if t < 0 else (q[2], -1)
-            yield in_plane(segment, (sign * (back - (abs(t) - (0.3 if side * kink < 0 else 0.0)) * 0.4e-3), side * HELD))
+    notch = HELD * math.tan(max(0.0, side * kink / 2))
+    round_end = max(0.0, -side * kink / 2) * HELD  # half the way round the joint
+    for way in np.linspace(-1, 1, count) * (round_end + 4 * BLEND):
+        beside = abs(way) - round_end
+        if beside >= 0:
+            segment, sign = (q[1], 1) if way < 0 else (q[2], -1)
+            yield in_plane(segment, (sign * (HALF - notch - beside), side * HELD))
         else:
-            joint, turned = in_plane(q[1], (HALF, 0.0)), q[1, 2] + kink * (t / 0.6 + 0.5)
-            yield joint + side * HELD * np.array([-math.sin(turned), math.cos(turned)])
+            turned = q[1, 2] + kink / 2 - side * way / HELD
+            yield in_plane(q[1], (HALF, 0.0)) + side * HELD * np.array([-math.sin(turned), math.cos(turned)])
 
 
 @pytest.mark.parametrize("side", [1, -1])
-def test_past_a_straight_joint_the_force_does_not_change_at_all(side):
-    change, totals = largest_change(0.0, side, 101)
-    assert abs(totals[:, :2] - totals[0, :2]).max() < 1e-9 * np.linalg.norm(totals[0])
-    assert change < 0.01  # the moment, because the corner moves
+def test_past_a_straight_joint_the_force_hardly_changes(side):
+    """Beyond its end a segment is round, and x^2 / (2 r) further away at x in the hand-over: 0.6 % of the force here with
+    a hand-over of a tenth of the radius, 13 % with half of it. The weights alone would change nothing."""
+    _, totals = largest_change(0.0, side, 201)
+    assert abs(totals[:, :2] - totals[0, :2]).max() < 0.02 * np.linalg.norm(totals[0, :2])
 
 
 @pytest.mark.parametrize("side", [1, -1])
@@ -219,7 +227,9 @@ def test_past_a_kinked_joint_the_force_is_continuous(kink, side):
 def test_round_a_joint_the_force_keeps_its_size():
     """On the convex side the weights of the neighbours sum to one at equal distance, so the force only turns."""
     _, totals = largest_change(-KINK, 1, 201)
-    assert np.hypot(*totals[:, :2].T) == pytest.approx(np.hypot(*totals[0, :2]), rel=1e-9)
+    round_end = KINK / 2 * HELD
+    within = abs(np.linspace(-1, 1, 201)) * (round_end + 4 * BLEND) < round_end
+    assert np.hypot(*totals[within, :2].T) == pytest.approx(np.hypot(*totals[0, :2]), rel=1e-9)
 
 
 def test_a_disc_that_slides_off_a_sharp_end_is_let_go_smoothly():

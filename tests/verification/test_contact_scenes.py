@@ -38,7 +38,8 @@ def assert_trusted(result: Result) -> None:
 
 
 def test_a_tip_head_on_on_an_apex_goes_one_way_and_stays_there() -> None:
-    """The apex on the axis: the tip's disc meets it, is turned aside by the rest curvature, and does not pass through."""
+    """The apex on the axis: the tip's disc meets it, is turned aside by the rest curvature, and does not pass
+    through."""
     result = simulate(
         scenario(
             vessel=carina(0.0),
@@ -51,7 +52,8 @@ def test_a_tip_head_on_on_an_apex_goes_one_way_and_stays_there() -> None:
     assert_trusted(result)
     kinds = result.dataset["contact_kind"].values
     assert (kinds == 2).any(), "the tip's disc never touched the apex"
-    # Curved to the left, it goes left, and the apex stays on its right: at the end the wire beside the apex is above it.
+    # Curved to the left, it goes left, and the apex stays on its right: at the end the wire beside the apex is above
+    # it.
     assert result.values("tip_y")[-1] > 2e-3
     x, y = result.values("node_x")[-1], result.values("node_y")[-1]
     assert np.interp(12e-3, x, y) > 0.0
@@ -70,7 +72,8 @@ def test_the_branch_is_the_side_of_the_apex_on_which_the_tip_passes(segments: in
 
 
 def test_pulled_back_over_an_apex_the_wire_may_take_the_other_branch() -> None:
-    """The side is undone when the tip comes back: pushed again with the other curvature, the same corner is passed anew."""
+    """The side is undone when the tip comes back: pushed again with the other curvature, the same corner is passed
+    anew."""
     phases = [
         {"speed": 2e-3, "distance": 0.022},
         {"speed": -2e-3, "distance": 0.016},
@@ -95,7 +98,8 @@ def test_a_corner_passed_and_passed_again_on_pull_back(segments: int) -> None:
     assert push[going_in] > 0 > push[coming_out]
     # While held, friction keeps a part of the push.
     assert push[coming_out] < push[holding] < push[going_in]
-    # Pushed, the wire presses the outer wall forwards; what the drive gives, vessel and catheter take (it is quasi-static).
+    # Pushed, the wire presses the outer wall forwards; what the drive gives, vessel and catheter take (it is quasi-
+    # static).
     taken = wall_x + result.values("catheter_force_x")
     # Only in a snap does the wire's inertia show.
     assert np.quantile(np.abs(taken - push), 0.9) < 1e-3 * np.abs(push).max()
@@ -130,7 +134,8 @@ def test_the_force_of_a_corner_does_not_jump_as_joints_slide_past_it() -> None:
 
 @pytest.mark.parametrize("segments", [20, 60])
 def test_the_lip_of_the_catheter_carries_a_wire_that_bends_over_it(segments: int) -> None:
-    """A catheter that ends close before a sharp turn: its inner lip is a corner to the wire, counted to the catheter."""
+    """A catheter that ends close before a sharp turn: its inner lip is a corner to the wire, counted to the
+    catheter."""
     vessel = bend(90, run_in=4e-3)
     result = simulate(
         scenario(
@@ -181,7 +186,8 @@ def test_sliding_friction_is_coulombs(friction: float) -> None:
     contacts = result.contacts_at(int(instant))
     normal, tangential = contacts["contact_normal_force"], contacts["contact_tangential_force"]
     pressing = normal > 0.01 * normal.max()
-    # On the wall and towards the tip: the wire drags the wall along. Fully sliding is 1.1 elastic slips, hence the tolerance.
+    # On the wall and towards the tip: the wire drags the wall along. Fully sliding is 1.1 elastic slips, hence the
+    # tolerance.
     assert tangential[pressing] == pytest.approx(friction * normal[pressing], rel=1e-6, abs=1e-12)
 
 
@@ -208,8 +214,8 @@ def test_the_wall_force_rises_where_the_wire_meets_the_corner() -> None:
 
 @pytest.mark.parametrize("heading", [0.0, 90.0, -135.0])
 def test_a_turned_scene_gives_turned_results(heading: float) -> None:
-    """The same vessel and catheter, turned in the plane: same push, forces and places turned. To rounding, amplified by the
-    iterations' tolerance of 1e-6."""
+    """The same vessel and catheter, turned in the plane: same push, forces and places turned. To rounding, amplified
+    by the iterations' tolerance of 1e-6."""
     straight = simulate(scenario(vessel=bend(60)))
     a = math.radians(heading)
     turn = np.array([[math.cos(a), -math.sin(a)], [math.sin(a), math.cos(a)]])
@@ -254,7 +260,8 @@ def test_the_corner_stays_on_its_side_of_the_wire(segments: int) -> None:
 
 
 def test_energy_closes_and_losses_only_grow() -> None:
-    """Pushed square against a wall it buckles; what the drive gave is found again, term by term, and losses never fall."""
+    """Pushed square against a wall it buckles; what the drive gave is found again, term by term, and losses never
+    fall."""
     result = simulate(scenario())
     assert_trusted(result)
     work = result.values("insertion_work")

@@ -153,7 +153,10 @@ static void node_pair(const System *sys, const Motion *m, Pairs *p, int i, doubl
 typedef struct {
     double x, y;                    /* along e and n, from the body's centre */
     double over;                    /* how far past the segment's end (0 beside it) */
+    double foot;                    /* of the nearest point of the axis, along e */
     double ux, uy;                  /* direction in which the gap grows with the corner's place */
+    double tx, ty;                  /* direction in which the wire slides past the corner, towards the tip */
+    double side;                    /* +1 or -1 */
     double distance, curvature;     /* from the axis, signed; 1/distance where the corner faces a round end */
 } Place;
 
@@ -163,8 +166,10 @@ static Place corner_place(const System *sys, const Motion *m, int b, double cx, 
     const double dx = cx - m->q[3 * b], dy = cy - m->q[3 * b + 1], h = sys->half_length[b];
     pl.x = dx * m->c[b] + dy * m->s[b];
     pl.y = -dx * m->s[b] + dy * m->c[b];
-    pl.over = pl.x - clamp(pl.x, -h, h);
+    pl.foot = clamp(pl.x, -h, h);
+    pl.over = pl.x - pl.foot;
     if (side == 0) side = pl.y < 0 ? -1 : 1;
+    pl.side = side;
     const int ahead = b == sys->bodies - 1 && pl.over > 0;
     if (pl.over != 0 && (side * pl.y > 0 || ahead)) {
         pl.distance = square_root(pl.over * pl.over + pl.y * pl.y);
@@ -177,6 +182,8 @@ static Place corner_place(const System *sys, const Motion *m, int b, double cx, 
         pl.ux = 0;
         pl.uy = side;
     }
+    pl.tx = side * pl.uy;
+    pl.ty = -side * pl.ux;
     return pl;
 }
 
@@ -201,7 +208,10 @@ static void corner_pair(const System *sys, const Motion *m, Pairs *p, int i, dou
     const double *q = m->q + 3 * b, *v = m->v + 3 * b, *q0 = m->q0 + 3 * b, cb = m->c[b], sb = m->s[b];
     const Place pl = corner_place(sys, m, b, sys->corner_x[k], sys->corner_y[k], p->side[i]);
     const double gap = pl.distance - sys->radius;
-    const double mx = q[0] - q0[0], my = q[1] - q0[1], slip = mx * cb + my * sb, across = -mx * sb + my * cb;
+    /* Motion of the axis's nearest point since the step's start: a fixed point of the body where the corner faces a round end. */
+    const double arm = pl.over != 0 ? pl.foot : 0;
+    const double dx = q[0] - q0[0] + arm * (cb - m->c0[b]), dy = q[1] - q0[1] + arm * (sb - m->s0[b]);
+    const double mx = dx * cb + dy * sb, my = -dx * sb + dy * cb, slip = mx * pl.tx + my * pl.ty;
     double far[3] = {0, 0, 0}, near[3] = {0, 0, 0}, w_far = 1, w_near = 1;
     if (b < last) w_far = joint_weight(m, b, b + 1, sys->half_length[b], sys->joint_blend[b], 1, &pl, far);
     if (b > 0) w_near = joint_weight(m, b, b - 1, sys->half_length[b], sys->joint_blend[b - 1], -1, &pl, near);
@@ -211,26 +221,28 @@ static void corner_pair(const System *sys, const Motion *m, Pairs *p, int i, dou
     if ((gap >= sys->toe && held == 0) || weight <= 0) { store(p, i, gap, &law, weight, slip); return; }
 
     const double G[3] = {-pl.ux, -pl.uy, pl.ux * pl.y - pl.uy * pl.x};                 /* of the gap, in the body's frame */
-    const double U[3] = {1, 0, across};                                               /* of the slip */
-    const double turn = -pl.uy * pl.y - pl.ux * pl.x;
+    const double turn = -pl.uy * pl.y - pl.ux * pl.x, bends = pl.side * pl.curvature;
     const double P[3] = {pl.uy, -pl.ux, turn};                                        /* of the place along the round end */
+    const double T[3] = {pl.tx, pl.ty, arm * pl.ty}, N[3] = {pl.ux, pl.uy, arm * pl.uy};
+    double U[3];                                                                      /* of the slip */
+    for (int c = 0; c < 3; c++) U[c] = T[c] + bends * (mx * pl.ux + my * pl.uy) * P[c];
+    U[2] += my * pl.tx - mx * pl.ty;
     const double rate = G[0] * (v[0] * cb + v[1] * sb) + G[1] * (-v[0] * sb + v[1] * cb) + G[2] * v[2];
     law = contact_law(sys, gap, rate, p->start[i] + slip, sys->corner_friction[k], held);
     store(p, i, gap, &law, weight, slip);
 
     const double d_normal = law.d_gap * fq + law.d_rate * fv;
-    const double F[3] = {law.normal * G[0] + law.tangential, law.normal * G[1], law.normal * G[2]};
-    double K[3][3];
-    for (int r = 0; r < 3; r++) for (int c = 0; c < 3; c++) {
-        K[r][c] = weight * (d_normal * G[r] * G[c] + law.normal * fq * pl.curvature * P[r] * P[c])
+    double F[3], K[3][3];
+    for (int r = 0; r < 3; r++) F[r] = law.normal * G[r] + law.tangential * T[r];
+    for (int r = 0; r < 3; r++) for (int c = 0; c < 3; c++)
+        K[r][c] = weight * (d_normal * G[c] * (G[r] + law.d_normal * T[r]) + law.d_slip * fq * T[r] * U[c])
+                + weight * fq * (law.normal * pl.curvature * P[r] + law.tangential * bends * N[r]) * P[c]
                 + fq * F[r] * (far[c] * w_near + near[c] * w_far);
-        if (r == 0) K[r][c] += weight * (law.d_slip * fq * U[c] + law.d_normal * d_normal * G[c]);
-    }
-    const double wn = weight * law.normal * fq;
-    K[1][2] += -wn * pl.ux + weight * law.tangential * fq;
-    K[2][1] += -wn * pl.ux;
-    K[0][2] += wn * pl.uy;
+    const double wn = weight * law.normal * fq, wt = weight * law.tangential * fq;
+    K[0][2] += wn * pl.uy - wt * pl.ty;
+    K[1][2] += -wn * pl.ux + wt * pl.tx;
     K[2][0] += wn * pl.uy;
+    K[2][1] += -wn * pl.ux;
     K[2][2] += wn * turn;
 
     force[0] += weight * (F[0] * cb - F[1] * sb);
@@ -354,10 +366,11 @@ static void add_corner(const System *sys, const Motion *m, const Pairs *p, int i
     const double cb = m->c[b], sb = m->s[b], h = sys->half_length[b];
     const Place pl = corner_place(sys, m, b, sys->corner_x[c], sys->corner_y[c], p->side[i]);
     const double ux = pl.ux * cb - pl.uy * sb, uy = pl.ux * sb + pl.uy * cb;
-    const double lever = h + clamp(pl.x, -h, h), normal = p->weight[i] * p->normal[i], tangential = p->weight[i] * p->tangential[i];
+    const double tx = pl.tx * cb - pl.ty * sb, ty = pl.tx * sb + pl.ty * cb;
+    const double lever = h + pl.foot, normal = p->weight[i] * p->normal[i], tangential = p->weight[i] * p->tangential[i];
     add_spring(k, p->normal_stiffness[i], ux, uy, lever, -sb, cb);
-    add_spring(k, p->tangential_stiffness[i], cb, sb, lever, -sb, cb);
-    const double fx = -normal * ux + tangential * cb, fy = -normal * uy + tangential * sb;
+    add_spring(k, p->tangential_stiffness[i] - normal * pl.curvature, tx, ty, lever, -sb, cb);
+    const double fx = -normal * ux + tangential * tx, fy = -normal * uy + tangential * ty;
     k->force[0] += fx;
     k->force[1] += fy;
     if (pl.over == 0) {                             /* beside the segment the normal turns with it */
