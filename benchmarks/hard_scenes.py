@@ -30,8 +30,8 @@ def main() -> None:
     print(machine())
     rows, slow, total = [], 0, 0
     for segments in options.segments:
-        base = run(cases.bend60(segments), 3).cost
-        print(f"\nbend60, n = {segments}: {base:.4g} s per s", flush=True)
+        base = run(cases.bend60(segments), 3).work
+        print(f"\nbend60, n = {segments}: {base:.4g} s of processor time per s", flush=True)
         for name, vessel in [*cases.vessels().items(), ("push, hold, pull", cases.vessels()["corner 90"])]:
             if options.only and name != options.only:
                 continue
@@ -39,7 +39,7 @@ def main() -> None:
                 for friction in FRICTIONS:
                     changes = {"drive": cases.PUSH_HOLD_PULL} if name == "push, hold, pull" else {}
                     outcome = run(cases.insertion(vessel, wire, segments, friction, **changes))
-                    ratio = outcome.cost / base
+                    ratio = outcome.work / base
                     slow, total = slow + (ratio > MOST), total + 1
                     row = [
                         name,

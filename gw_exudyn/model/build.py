@@ -52,7 +52,9 @@ class Model:
     def vessel_outline(self) -> list[Floats]:
         """The vessel's walls for drawing, in the scenario's plane: (k, 2) polylines, m."""
         lines = vessel_polylines(self.outline, self.tube)
-        return [self.frame.points_out(np.vstack([points, points[:1]]) if closed else points) for points, closed in lines]
+        return [
+            self.frame.points_out(np.vstack([points, points[:1]]) if closed else points) for points, closed in lines
+        ]
 
     def catheter_outline(self) -> list[Floats]:
         """The catheter's walls for drawing, in the scenario's plane: (2, 2) polylines, m, as long as the wire."""
@@ -149,7 +151,7 @@ def width_at_exit(outline: Outline) -> float:
 
 
 def _warnings(scenario: Scenario, wire: Wire, width: float) -> tuple[str, ...]:
-    return tuple([*_too_soft(scenario, width), *_too_coarse(scenario, wire)])
+    return (*_too_soft(scenario, width), *_too_coarse(scenario, wire))
 
 
 def _too_soft(scenario: Scenario, width: float) -> list[str]:

@@ -68,8 +68,9 @@ def _exit(scenario: Scenario, outline: Outline, tube: Tube) -> list[Problem]:
     if not inside:
         return []
     text = (
-        f"{_mm(tube.bore)} is wider than the lumen at the exit, where a wall of the vessel stands {_mm(min(inside))} from "
-        "the catheter's axis; take a narrower bore, or move catheter.exit further into the lumen"
+        f"{_mm(tube.bore)} is wider than the lumen at the exit, where a wall of the vessel stands "
+        f"{_mm(min(inside))} from the catheter's axis; "
+        "take a narrower bore, or move catheter.exit further into the lumen"
     )
     return [scenario.problem("catheter.bore", text)]
 

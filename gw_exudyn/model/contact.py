@@ -19,8 +19,8 @@ Ints = NDArray[np.int64]
 class ContactLaw:
     """Numbers of the contact law.
 
-    stiffness, tangential_stiffness : N/m, of one contact. damping : N s/m per m of penetration. toe : m, half width of the
-    quadratic onset: a contact begins to push at this gap and is fully stiff at this penetration.
+    stiffness, tangential_stiffness : N/m, of one contact. damping : N s/m per m of penetration. toe : m, half width of
+    the quadratic onset: a contact begins to push at this gap and is fully stiff at this penetration.
     """
 
     stiffness: float
@@ -41,11 +41,11 @@ def _no_values() -> Floats:
 class ContactMemory:
     """What contact keeps from one step to the next. Part of the saved state.
 
-    node_keys : (a,), sorted; node pair (body * walls + wall) that carried a force. node_slip : (a,), m, its elastic slip;
-        node_held : (a,), its share of the full stiffness.
+    node_keys : (a,), sorted; node pair (body * walls + wall) that carried a force. node_slip : (a,), m, its elastic
+        slip; node_held : (a,), its share of the full stiffness.
     corner_keys : (b,), sorted; corner pair (body * corners + corner). corner_pair_slip, corner_held : (b,).
-    side : (k,), for each corner +1 or -1, the side of the wire on which it lies, or 0 while it is ahead of the tip. Decided
-        when the tip passes, undone when it comes back.
+    side : (k,), for each corner +1 or -1, the side of the wire on which it lies, or 0 while it is ahead of the tip.
+        Decided when the tip passes, undone when it comes back.
     corner_slip : (k,), m, elastic slip of the wire past the corner, for a segment that is new to it.
     """
 
@@ -116,8 +116,10 @@ class Contact:
         return self.nodes.gap.copy(), self.corners.gap.copy()
 
     def share_to_touch(self, before: tuple[Floats, Floats]) -> float:
-        """Share, 0 to 1, of the way from the place of `before` (its `gaps`) to the present one at which the first contact that
-        was open then just closes."""
+        """Share of the way from the place of `before` (its `gaps`) to the present one where the first contact closes.
+
+        0 to 1; of the contacts that were open at `before`, 1 if none of them closes.
+        """
         share = 1.0
         for pairs, gap in zip((self.nodes, self.corners), before, strict=True):
             closes = (gap >= self.law.toe) & (pairs.gap < -self.law.toe) & (pairs.weight > _HALF_WAY)

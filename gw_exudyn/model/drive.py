@@ -59,7 +59,10 @@ class Drive:
         return min(0.0, *travels), max(0.0, *travels)
 
     def taken_over_at(self, time: float, speed: float) -> Drive:
-        """The same up to `time`, and then the constant `speed`, without a jump in travel."""
+        """The constant `speed` from `time` on, without a jump in travel.
+
+        What an earlier take-over did is forgotten: before `time` the result is the table again, so ask it only later.
+        """
         return replace(self, taken_over=(time, self.position_at(time), speed))
 
     def _row(self, time: float) -> int:

@@ -2,8 +2,8 @@
 
 At the end of a step the forces on every segment balance. Their work over the step, taken with the forces at its end,
 therefore balances too; the terms below are that balance, written with the energies that a person asks for. The
-integrator's own loss (forces at the end instead of along the step, finite turns of rigid segments) is worked out term by
-term as `numerical_loss`; in a snap-through that is skipped in one step it is the energy set free.
+integrator's own loss (forces at the end instead of along the step, finite turns of rigid segments) is worked out term
+by term as `numerical_loss`; in a snap-through that is skipped in one step it is the energy set free.
 """
 
 from __future__ import annotations
@@ -22,8 +22,11 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Energies:
-    """J. State: elastic (joints), wall (normal and tangential springs), kinetic. Sums since the start: insertion_work (by the
-    drive), friction_loss, damping_loss (joints and walls), numerical_loss. `largest_work`: the largest of the work and the stored energies so far.
+    """All in J.
+
+    elastic (joints), wall (normal and tangential springs), kinetic : now. insertion_work (by the drive), friction_loss,
+        damping_loss (joints and walls), numerical_loss : sums since the start.
+    start : stored at the start. largest_work : the largest of the work and of the stored energy so far.
     """
 
     elastic: float = 0.0
@@ -99,7 +102,13 @@ def wall_start(contact: Contact) -> WallStart:
 
 
 def advanced(
-    before: Energies, contact: Contact, start: WallStart, old: Snapshot, new: Snapshot, acceleration: Floats, step: float
+    before: Energies,
+    contact: Contact,
+    start: WallStart,
+    old: Snapshot,
+    new: Snapshot,
+    acceleration: Floats,
+    step: float,
 ) -> Energies:
     """The energies after a step. `contact` is evaluated at its end; acceleration : (n, 3) at its end; step : s."""
     wire = contact.wire
@@ -158,7 +167,7 @@ def _static_force(pairs: Pairs, toe: float, stiffness: float) -> Floats:
 
 
 def _finite_turns(contact: Contact, old: Snapshot, new: Snapshot, inertia: Floats) -> float:
-    """J: work of the joints' forces because a rigid segment's end moves on an arc, not along the tangent at its end place.
+    """J: work of the joints' forces because a rigid segment's end moves on an arc, not along the tangent at its place.
 
     The force in joint i is what the distal part needs: its inertia less its contact forces.
     """
@@ -174,5 +183,3 @@ def _finite_turns(contact: Contact, old: Snapshot, new: Snapshot, inertia: Float
     gap = arc.copy()
     gap[1:] += arc[:-1]
     return float((joint * gap).sum())
-
-

@@ -17,7 +17,7 @@ _SHARP_FROM = 1e-7
 """Turn, rad, from which a corner counts as one."""
 
 _REACH_PAST_POCKET = 0.3e-3
-"""How far, m, a wall reaches on past a corner that points away from the lumen, so that Newton's trial places meet it."""
+"""How far, m, a wall reaches on past a corner that points away from the lumen, for Newton's trial places to meet it."""
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,8 @@ class Walls:
     """Wall segments and corners that point into the lumen.
 
     start : (w, 2), m. tangent : (w, 2), unit, the lumen on its left. length : (w,), m.
-    lo, hi : (w,), m along the tangent; where node contact has faded out. fade_lo, fade_hi : (w,), m, over which it fades.
+    lo, hi : (w,), m along the tangent, where node contact has faded out. fade_lo, fade_hi : (w,), m, over which it
+        fades.
     sharp : (w,), bit 0: the start points into the lumen (a corner takes over there), bit 1: the end does.
     friction : (w,). tube : (w,) bool, the catheter's rather than the vessel's.
     corner : (k, 2), m. corner_friction : (k,). corner_tube : (k,) bool, a lip of the catheter.
@@ -53,8 +54,10 @@ class Walls:
 
 @dataclass(frozen=True)
 class _Polyline:
-    """Wall pieces in a row, the lumen on the left. `sharp_ends`: whether its two ends are sharp; `ends_reach`: how far a
-    blunt end reaches on."""
+    """Wall pieces in a row, the lumen on the left.
+
+    sharp_ends : whether its two ends are sharp. ends_reach : how far, m, a blunt end reaches on. Of an open line only.
+    """
 
     points: Floats
     closed: bool
@@ -104,7 +107,7 @@ def vessel_polylines(outline: Outline, tube: Tube) -> list[tuple[Floats, bool]]:
 
 
 def tube_polylines(tube: Tube) -> list[Floats]:
-    """The catheter's two walls for drawing: (2, 2) each, m."""
+    """The catheter's two walls, the bore on their left: (2, 2) each, m."""
     h = tube.bore / 2
     return [np.array([[-tube.length, -h], [0.0, -h]]), np.array([[0.0, h], [-tube.length, h]])]
 
@@ -112,8 +115,8 @@ def tube_polylines(tube: Tube) -> list[Floats]:
 def _outside_tube(a: Floats, b: Floats, tube: Tube) -> list[tuple[Floats, Floats]]:
     """The pieces of an edge outside the catheter's bore and mouth (Liang and Barsky's clipping against a rectangle).
 
-    The rectangle is a hair narrower than the bore, so that walls flush with the catheter stay, and reaches a hair past the
-    exit, so that a wall across the mouth goes.
+    The rectangle is a hair narrower than the bore, so that walls flush with the catheter stay, and reaches a hair past
+    the exit, so that a wall across the mouth goes.
     """
     hair = 1e-9
     low, high = np.array([-tube.length, -tube.bore / 2 + hair]), np.array([hair, tube.bore / 2 - hair])
@@ -192,7 +195,7 @@ def _turns(line: _Polyline) -> Floats:
     after = np.roll(line.points, -1, axis=0) - line.points
     before = np.roll(after, 1, axis=0)
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    turns = np.arctan2(cross, (before * after).sum(axis=1))
+    turns: Floats = np.arctan2(cross, (before * after).sum(axis=1))
     if not line.closed:
         turns[[0, -1]] = 0.0
     return turns
@@ -231,8 +234,11 @@ def _segments(line: _Polyline, radius: float, friction: float) -> dict[str, NDAr
 
 
 def _end(turn: float, radius: float) -> tuple[bool, float]:
-    """At a pocket a wall reaches on, but never deeper than half a radius behind its neighbour: across a thin septum its
-    end would else stand in the next lumen."""
+    """(sharp, how far it reaches on, m) of a wall's end at a corner.
+
+    At a pocket a wall reaches on, but never deeper than half a radius behind its neighbour: across a thin septum its
+    end would else stand in the next lumen.
+    """
     if turn < -_SHARP_FROM:
         return True, 0.0
     sine = math.sin(min(turn, math.pi / 2))

@@ -28,8 +28,8 @@ class Wire:
     """A chain of n segments, numbered from the proximal end to the tip; joint i is at the proximal end of segment i.
 
     radius : m. lengths : (n,), m. mass : (n,), kg. inertia : (n,), kg m^2, about the centre.
-    joint_stiffness : (n,), N m/rad. joint_damping : (n,), N m s/rad. rest_angle : (n,), rad, the angle of segment i against
-        segment i - 1 (joint 0: against the catheter) without load, counter-clockwise.
+    joint_stiffness : (n,), N m/rad. joint_damping : (n,), N m s/rad. rest_angle : (n,), rad, the angle of segment i
+        against segment i - 1 (joint 0: against the catheter) without load, counter-clockwise.
     node_arc_length : (n + 1,), m, from the tip; node i is the proximal end of segment i, node n the tip.
     """
 
@@ -89,7 +89,8 @@ def segment_lengths(length: float, segments: int, grading: float) -> Floats:
 def joint_regions(nodes: Floats) -> tuple[Floats, Floats]:
     """The stretch of wire whose bending each joint stands for: (n,), (n,), m from the tip, proximal and distal bound.
 
-    From the middle of one segment to the middle of the next; the clamp has half a segment only, hence 2 EI / length.
+    nodes : (n + 1,), m from the tip, the proximal end first. A joint's stretch goes from the middle of one segment to
+        the middle of the next; the clamp has half a segment only, hence 2 EI / length.
     """
     middle = (nodes[:-1] + nodes[1:]) / 2
     return np.concatenate([nodes[:1], middle[:-1]]), middle

@@ -20,7 +20,10 @@ SCALE = np.array([1.0, 1.0, 1 / HALF])
 """One unit of each coordinate that moves a segment's end by one metre."""
 
 NUDGE = 2e-10
-"""m. Differences over twice of it: truncation (NUDGE / slip at Coulomb's limit)^2 ~ 3e-7, rounding 1e-18 m / NUDGE ~ 1e-8."""
+"""m. Differences over twice of it.
+
+Truncation (NUDGE / slip at Coulomb's limit)^2 ~ 3e-7, rounding 1e-18 m / NUDGE ~ 1e-8.
+"""
 
 TOLERANCE = 1e-6
 MU = 0.4
@@ -64,7 +67,7 @@ def assert_tangent_is_exact(contact, q, v, touching):
 
 
 def slid(contact, q, along, ratio):
-    """Begin the step so far back along the unit vectors `along`, (n, 2), that at q friction has `ratio` times its limit."""
+    """Begin the step so far back along `along`, (n, 2), that at q the tangential spring has `ratio` times its limit."""
     force_at(contact, q, np.zeros_like(q))
     normal = max(contact.nodes.normal.max(initial=0.0), contact.corners.normal.max(initial=0.0))
     back = q.copy()
@@ -137,7 +140,7 @@ CORNERS = {
 
 
 def wire_at(kink, corner, overall=0.3):
-    """(q, corner): a chain of four segments, kinked after segment 1, and the corner seen from segment 1 in the plane."""
+    """(q, corner): a chain of four segments, kinked after segment 1, and in the plane the corner seen from there."""
     wire = plain_wire(np.full(4, 2 * HALF))
     q = chain(wire, (1e-3, 2e-3), overall + np.array([-0.1, 0.0, kink, kink + 0.1]))
     return wire, q, in_plane(q[1], corner)
@@ -210,8 +213,8 @@ def sliding_past(q, side, count):
 
 @pytest.mark.parametrize("side", [1, -1])
 def test_past_a_straight_joint_the_force_hardly_changes(side):
-    """Beyond its end a segment is round, and x^2 / (2 r) further away at x in the hand-over: 0.6 % of the force here with
-    a hand-over of a tenth of the radius, 13 % with half of it. The weights alone would change nothing."""
+    """Beyond its end a segment is round, and x^2 / (2 r) further away at x in the hand-over: 0.6 % of the force here
+    with a hand-over of a tenth of the radius, 13 % with half of it. The weights alone would change nothing."""
     _, totals = largest_change(0.0, side, 201)
     assert abs(totals[:, :2] - totals[0, :2]).max() < 0.02 * np.linalg.norm(totals[0, :2])
 
@@ -348,39 +351,45 @@ def gap_for(force):
     return -depth if depth > LAW.toe else LAW.toe - math.sqrt(4 * LAW.toe * depth)
 
 
-@pytest.mark.parametrize("seed", range(8))
-def test_the_count_holds_for_bent_wires_on_several_walls(seed):
-    """No balance is needed for the count. A wall under every other node, so that the wire is pressed by forces that
-    differ in size and direction."""
-    rng = np.random.default_rng(seed)
-    wire = plain_wire(np.full(7, 2 * HALF), stiffness=2e-4)
-    angles = np.cumsum(rng.normal(0, 0.2, 7))
-    q = chain(wire, (1e-3, 0.0), angles)
-    ends = q[:, :2] + HALF * directions(q)
-    pieces = []
-    for node in range(1, 7, 2):
+def on_walls(rng, q):
+    """A wall under every other node, so that the wire is pressed by forces that differ in size and direction."""
+    ends, pieces = q[:, :2] + HALF * directions(q), []
+    for node in range(1, len(q), 2):
         along = rng.uniform(-math.pi, math.pi)
         t, n = np.array([math.cos(along), math.sin(along)]), np.array([-math.sin(along), math.cos(along)])
         foot = ends[node] - (RADIUS - rng.uniform(1, 12) * LAW.toe) * n
         pieces.append((tuple(foot - 0.3e-3 * t), tuple(foot + 0.3e-3 * t)))
-    contact = at_rest(wire, bare_walls(*pieces), q)
-    assert_count_is_that_of_the_hessian(contact, wire, (1e-3, 0.0), angles)
+    return bare_walls(*pieces)
 
 
-@pytest.mark.parametrize("place", [-0.9, -0.3, 0.4])
-@pytest.mark.parametrize("depth", [1.0, 6.0])
-def test_the_count_holds_for_a_corner_beside_a_segment(place, depth):
-    wire = plain_wire(np.full(5, 2 * HALF), stiffness=2e-4)
-    angles = np.array([0.05, 0.1, 0.2, 0.25, 0.3])
-    q = chain(wire, (1e-3, 0.0), angles)
-    corner = in_plane(q[3], (place * 0.8 * HALF, RADIUS - depth * LAW.toe))
-    contact = at_rest(wire, bare_walls(corners=[corner]), q)
-    assert_count_is_that_of_the_hessian(contact, wire, (1e-3, 0.0), angles)
+def on_corners(rng, q):
+    """Two corners beside segments of the distal half, pressed in on either side."""
+    segments = len(q) - 1 - rng.permutation(3)[:2]
+    sides, depths = rng.choice([-1, 1], 2), rng.uniform(1, 12, 2) * LAW.toe
+    places = zip(segments, rng.uniform(-0.8, 0.8, 2) * HALF, sides * (RADIUS - depths), strict=True)
+    return bare_walls(corners=[in_plane(q[i], (x, y)) for i, x, y in places])
+
+
+@pytest.mark.parametrize("walls_for", [on_walls, on_corners])
+def test_the_count_holds_for_bent_wires_in_any_place(walls_for):
+    """No balance is needed for the count. Soft joints, so that what the forces' directions add decides it."""
+    counts = []
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        wire = plain_wire(np.full(6, 2 * HALF), stiffness=10 ** rng.uniform(-6, -4.5))
+        angles = np.cumsum(rng.normal(0, 0.2, 6))
+        q = chain(wire, (1e-3, 0.0), angles)
+        contact = at_rest(wire, walls_for(rng, q), q)
+        eigenvalues = np.linalg.eigvalsh(hessian(contact, wire, (1e-3, 0.0), angles))
+        if abs(eigenvalues).min() > 0.02 * wire.joint_stiffness[0]:
+            counts.append(assert_count_is_that_of_the_hessian(contact, wire, (1e-3, 0.0), angles))
+    assert len(counts) > 30
+    assert {0, 1, 2} <= set(counts)
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.4])
 def test_a_tip_pressed_head_on_against_a_corner_is_unstable(angle):
-    """The disc would slip off the corner to either side: a small force is enough, far below the column's buckling load."""
+    """The disc would slip off the corner to either side, at a force far below the column's buckling load."""
     wire = plain_wire(np.full(5, 2 * HALF), stiffness=2e-4)
     angles = np.zeros(5)
     q = chain(wire, (1e-3, 0.0), angles)

@@ -15,9 +15,7 @@ UP = Frame((1.0, 2.0), math.pi / 2)
 """At (1, 2), pointing up: its x is the plane's y, its y the plane's -x."""
 
 
-@pytest.mark.parametrize(
-    ("plane", "local"), [((1, 2), (0, 0)), ((1, 5), (3, 0)), ((-1, 2), (0, 2)), ((4, 6), (4, -3))]
-)
+@pytest.mark.parametrize(("plane", "local"), [((1, 2), (0, 0)), ((1, 5), (3, 0)), ((-1, 2), (0, 2)), ((4, 6), (4, -3))])
 def test_ahead_is_x_and_left_is_y(plane, local):
     assert UP.points_in(plane) == pytest.approx(np.array(local, dtype=float), abs=1e-15)
     assert UP.points_out(local) == pytest.approx(np.array(plane, dtype=float), abs=1e-15)

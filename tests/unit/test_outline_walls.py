@@ -126,16 +126,18 @@ def test_open_edges_in_a_row_become_one():
     assert outline.open_edges == {1, 3}
 
 
-def test_a_spike_is_no_straight_line():
-    outline = polygon((0, -2), (20, -2), (30, -2), (20, -1.9), (20, 2), (0, 2))
-    expected = [(0, -2), (30, -2), (20, -1.9), (20, 2), (0, 2)]  # without the point on the way to the spike's end
-    assert outline.points / MM == pytest.approx(np.array(expected))
+def test_a_slit_is_no_straight_line():
+    """A septum without thickness: at its end the outline turns back."""
+    points = [(0, -3), (30, -3), (30, 0), (10, 0), (30, 1e-6), (30, 3), (0, 3)]
+    assert polygon(*points).points / MM == pytest.approx(np.array(points))
 
 
 # --- walls
 
 
-@pytest.mark.parametrize("outline", [channel(), arc(1.2), arc(-2.5), polygon(*L_BEND)], ids=["straight", "left", "right", "L"])
+@pytest.mark.parametrize(
+    "outline", [channel(), arc(1.2), arc(-2.5), polygon(*L_BEND)], ids=["straight", "left", "right", "L"]
+)
 def test_the_lumen_is_on_the_left_of_every_wall(outline):
     walls = walls_of(outline)
     middle = walls.start + walls.tangent * walls.length[:, None] / 2
@@ -238,7 +240,9 @@ def test_a_catheter_that_protrudes_keeps_the_lumen_beside_it():
     """The exit is 5 mm inside: the wall behind is cut, the walls beside are whole, and the lips are corners."""
     outline = polygon((-5, -2), (30, -2), (30, 2), (-5, 2))
     walls = walls_of(outline)
-    assert {((-5.0, -2.0), (30.0, -2.0)), ((-5.0, 2.0), (-5.0, 0.6)), ((-5.0, -0.6), (-5.0, -2.0))} < vessel_segments(walls)
+    assert {((-5.0, -2.0), (30.0, -2.0)), ((-5.0, 2.0), (-5.0, 0.6)), ((-5.0, -0.6), (-5.0, -2.0))} < vessel_segments(
+        walls
+    )
     assert corners_in_mm(walls) == LIPS
 
 

@@ -110,7 +110,7 @@ def test_mass_and_inertia_are_those_of_solid_rods(segments):
     area, mass = math.pi * 0.2e-3**2, built.mass
     assert mass.sum() == pytest.approx(6000.0 * area * LENGTH, rel=1e-9)
     assert mass == pytest.approx(6000.0 * area * built.lengths)
-    assert built.inertia == pytest.approx(mass * (3 * 0.2e-3**2 + built.lengths**2) / 12)
+    assert built.inertia == pytest.approx(mass * (3 * 0.2e-3**2 + built.lengths**2) / 12, rel=1e-9, abs=0)
     assert built.radius == 0.2e-3
 
 

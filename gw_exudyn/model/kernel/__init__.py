@@ -39,7 +39,7 @@ def library_name(system: str, machine: str) -> str:
 class System(ctypes.Structure):
     """`System` of contact.c."""
 
-    _fields_ = [  # noqa: RUF012  # ctypes wants a plain list
+    _fields_ = [
         *((name, ctypes.c_int) for name in ("bodies", "walls", "corners")),
         *((name, ctypes.c_double) for name in ("radius", "stiffness", "damping", "toe", "tangential_stiffness")),
         *(
@@ -66,7 +66,7 @@ class System(ctypes.Structure):
 
 
 class _Pairs(ctypes.Structure):
-    _fields_ = [  # noqa: RUF012
+    _fields_ = [
         *((name, ctypes.c_int) for name in ("capacity", "count")),
         *((name, _INTS) for name in ("body", "target")),
         *(
@@ -90,7 +90,7 @@ class _Pairs(ctypes.Structure):
 
 
 class _Motion(ctypes.Structure):
-    _fields_ = [  # noqa: RUF012
+    _fields_ = [
         *((name, _DOUBLES) for name in ("q", "c", "s", "v", "q0", "c0", "s0")),
         ("predicted", ctypes.c_int),
     ]
@@ -119,7 +119,7 @@ class Pairs:
     tangential_stiffness: Floats
 
     def __init__(self, capacity: int) -> None:
-        names = [str(name) for name, _ in _Pairs._fields_[2:]]
+        names = [str(field[0]) for field in _Pairs._fields_[2:]]
         self._arrays: dict[str, NDArray[Any]] = {
             name: np.zeros(capacity, np.int32 if name in ("body", "target") else np.float64) for name in names
         }
@@ -171,12 +171,17 @@ class Motion:
 
 
 class Kernel:
-    """The functions of the library, on one system. `arrays` by the names of `System`; they are kept and read in place."""
+    """The functions of the library, on one system.
+
+    arrays : by the names of `System`; kept, and read in place. numbers : the rest of `System`.
+    force : (3n,), tangent : (9n,), results of the last `evaluate`.
+    """
 
     def __init__(self, arrays: dict[str, NDArray[Any]], numbers: dict[str, float]) -> None:
         integer = ("wall_sharp", "wall_tube", "corner_tube")
         self._arrays = {
-            name: np.ascontiguousarray(array, np.int32 if name in integer else np.float64) for name, array in arrays.items()
+            name: np.ascontiguousarray(array, np.int32 if name in integer else np.float64)
+            for name, array in arrays.items()
         }
         counts = {
             "bodies": len(arrays["half_length"]),
@@ -193,7 +198,7 @@ class Kernel:
         self._outputs = self.force.ctypes.data, self.tangent.ctypes.data
 
     def evaluate(self, motion: Motion, nodes: Pairs, corners: Pairs, position: float, velocity: float) -> None:
-        """Fill `force` (3n) and `tangent` (9n, 3 x 3 blocks by rows): `position` d force/dq + `velocity` d force/dq_t."""
+        """Fill `force` and `tangent` (3 x 3 blocks by rows): `position` d force/dq + `velocity` d force/dq_t."""
         self._library.gw_contact_evaluate(
             self._address, motion.address, nodes.address, corners.address, position, velocity, *self._outputs
         )
@@ -207,7 +212,7 @@ class Kernel:
         )
 
     def nearest(self, motion: Motion, first: int, corners: int) -> tuple[Ints, Ints, Floats]:
-        """For each corner the nearest body (-1: none), 1 where the corner lies ahead of the tip, and its signed offset, m."""
+        """For each corner the nearest body (-1: none), 1 where it is ahead of the tip, its offset, m (left: +)."""
         body, ahead, offset = np.full(corners, -1, np.int32), np.zeros(corners, np.int32), np.zeros(corners)
         self._library.gw_contact_nearest(
             self._address, motion.address, first, body.ctypes.data, ahead.ctypes.data, offset.ctypes.data
@@ -235,8 +240,8 @@ def _load() -> ctypes.CDLL:
     path = LIBRARY_FOLDER / library_name(platform.system(), platform.machine())
     if not path.exists():
         raise SolverError(
-            f"there is no contact kernel for this machine ({path.name}); with the package ziglang or a C compiler at hand, "
-            "python -m gw_exudyn.model.kernel.build makes it"
+            f"there is no contact kernel for this machine ({path.name}); with the package ziglang or a C compiler at "
+            "hand, python -m gw_exudyn.model.kernel.build makes it"
         )
     try:
         library = ctypes.CDLL(str(path))
