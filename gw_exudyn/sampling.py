@@ -99,15 +99,15 @@ def _corner_contacts(stepper: Stepper) -> dict[str, Floats]:
     direction = away / np.maximum(np.hypot(*away.T), 1e-300)[:, None]
     past_tip = (body == wire.segments - 1) & ((offset * along).sum(axis=1) > half)
     pressed, dragged = _shares(pairs, live)
-    # The wire slides across the direction to the corner, towards its tip.
-    across = np.column_stack([direction[:, 1], -direction[:, 0]])
-    across *= np.where((across * along).sum(axis=1) < 0, -1.0, 1.0)[:, None]
+    # Slip counts across the direction to the corner, in the sense of contact.c (`turn`).
+    across = np.where(pairs.side[live] < 0, -1.0, 1.0)[:, None] * np.column_stack([direction[:, 1], -direction[:, 0]])
+    towards_tip = np.where((across * along).sum(axis=1) < 0, -1.0, 1.0)
     on_wire = -pressed[:, None] * direction + dragged[:, None] * across
     return {
         "point": place,
         "contact_arc_length": wire.node_arc_length[body + 1] + half - beside,
         "contact_normal_force": pressed,
-        "contact_tangential_force": -dragged,
+        "contact_tangential_force": -dragged * towards_tip,
         "contact_gap": pairs.gap[live],
         "contact_kind": np.where(past_tip, TIP_ON_CORNER, CORNER_ON_WIRE),
         "contact_owner": np.where(walls.corner_tube[corner], CATHETER, VESSEL),

@@ -136,14 +136,17 @@ class Contact:
         share = corners.weight * meeting
         total = np.bincount(corners.target, share, len(walls.corner))
         slip = np.bincount(corners.target, share * corners.elastic, len(walls.corner))
+        side = self._passed()
+        # Slip counts along the wire, whose sense about the corner is that of a corner on the left until it is passed.
+        turned = np.where((side < 0) == (self.memory.side < 0), 1.0, -1.0)
         self.memory = ContactMemory(
-            side=self._passed(),
-            corner_slip=np.where(total > 0, slip / np.where(total > 0, total, 1.0), 0.0),
+            side=side,
+            corner_slip=turned * np.where(total > 0, slip / np.where(total > 0, total, 1.0), 0.0),
             node_keys=self._node_keys[touching],
             node_slip=nodes.elastic[touching],
             node_held=nodes.normal_stiffness[touching] / nodes.weight[touching] / stiffness,
             corner_keys=self._corner_keys[meeting],
-            corner_pair_slip=corners.elastic[meeting],
+            corner_pair_slip=(turned[corners.target] * corners.elastic)[meeting],
             corner_held=corners.normal_stiffness[meeting] / corners.weight[meeting] / stiffness,
         )
 

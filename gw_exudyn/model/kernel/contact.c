@@ -156,7 +156,7 @@ typedef struct {
     double foot;                    /* of the nearest point of the axis, along e */
     double ux, uy;                  /* direction in which the gap grows with the corner's place */
     double tx, ty;                  /* direction in which the wire slides past the corner, towards the tip */
-    double side;                    /* +1 or -1 */
+    double turn;                    /* +1 or -1: the sense in which (tx, ty) turns with (ux, uy) */
     double distance, curvature;     /* from the axis, signed; 1/distance where the corner faces a round end */
 } Place;
 
@@ -168,8 +168,8 @@ static Place corner_place(const System *sys, const Motion *m, int b, double cx, 
     pl.y = -dx * m->s[b] + dy * m->c[b];
     pl.foot = clamp(pl.x, -h, h);
     pl.over = pl.x - pl.foot;
+    pl.turn = side < 0 ? -1 : 1;        /* not passed yet: one sense, whichever way the tip leans, so that kept slip keeps its sign */
     if (side == 0) side = pl.y < 0 ? -1 : 1;
-    pl.side = side;
     const int ahead = b == sys->bodies - 1 && pl.over > 0;
     if (pl.over != 0 && (side * pl.y > 0 || ahead)) {
         pl.distance = square_root(pl.over * pl.over + pl.y * pl.y);
@@ -182,8 +182,8 @@ static Place corner_place(const System *sys, const Motion *m, int b, double cx, 
         pl.ux = 0;
         pl.uy = side;
     }
-    pl.tx = side * pl.uy;
-    pl.ty = -side * pl.ux;
+    pl.tx = pl.turn * pl.uy;
+    pl.ty = -pl.turn * pl.ux;
     return pl;
 }
 
@@ -221,7 +221,7 @@ static void corner_pair(const System *sys, const Motion *m, Pairs *p, int i, dou
     if ((gap >= sys->toe && held == 0) || weight <= 0) { store(p, i, gap, &law, weight, slip); return; }
 
     const double G[3] = {-pl.ux, -pl.uy, pl.ux * pl.y - pl.uy * pl.x};                 /* of the gap, in the body's frame */
-    const double turn = -pl.uy * pl.y - pl.ux * pl.x, bends = pl.side * pl.curvature;
+    const double turn = -pl.uy * pl.y - pl.ux * pl.x, bends = pl.turn * pl.curvature;
     const double P[3] = {pl.uy, -pl.ux, turn};                                        /* of the place along the round end */
     const double T[3] = {pl.tx, pl.ty, arm * pl.ty}, N[3] = {pl.ux, pl.uy, arm * pl.uy};
     double U[3];                                                                      /* of the slip */
