@@ -16,6 +16,7 @@ from gw_exudyn.engine.state import from_arrays, pack, to_arrays, unpack
 from gw_exudyn.engine.stepper import Stepper
 from gw_exudyn.errors import UsageError
 from gw_exudyn.model import Model, build
+from gw_exudyn.model.drive import Drive
 from gw_exudyn.result import Result, Status, StatusReport
 from gw_exudyn.sampling import sample
 from gw_exudyn.trust import energy_report, snap_events, trust_report
@@ -95,17 +96,22 @@ class Simulation:
         """
         if not (math.isfinite(dt) and dt > 0):
             raise UsageError(f"a step of {dt} s cannot be taken; it must be positive")
-        if speed is not None:
-            self._take_over(speed)
         # Rounded, so that the sum of many small steps is the same time as one large step.
-        self.advance(round(self.time + dt, 12))
+        target = round(self.time + dt, 12)
+        if speed is not None:
+            self._take_over(speed, target)
+        self.advance(target)
         return self.outputs
 
     def advance(self, target: float) -> bool:
-        """Run to the time `target`, s; False when the run failed on the way (see `status`). Raises UsageError after
-        that."""
+        """Run to the time `target`, s; False when the run failed on the way (see `status`).
+
+        Raises UsageError for a run that has failed before, and for a drive that would take the wire's end out of the
+        catheter on the way; nothing has moved then.
+        """
         if self._stopped is not None:
             raise UsageError(f"the run has ended: {self._stopped.sentence()} Reset it, or restore an earlier state.")
+        self._check_travel(self._stepper.drive, target)
         step = self.scenario.solver.step
         while self.time < target - 1e-9:
             # One nominal step at a time, so that a run that went wrong is stopped there and not at the end.
@@ -116,11 +122,22 @@ class Simulation:
                 return False
         return True
 
-    def _take_over(self, speed: float) -> None:
+    def _check_travel(self, drive: Drive, target: float) -> None:
+        """The drive keeps the proximal end in the catheter: in the table it was checked before, after it is here."""
+        position, wire = drive.position_at(target), self.model.wire.length
+        furthest_back = wire - self.model.tube.length
+        if not furthest_back < position < wire:
+            raise UsageError(
+                f"at {target:.6g} s the drive would be at {position * 1e3:.6g} mm, and the wire of {wire * 1e3:.6g} mm "
+                f"is guided from {furthest_back * 1e3:.6g} mm to its length only; take another speed or a shorter step"
+            )
+
+    def _take_over(self, speed: float, target: float) -> None:
         if not math.isfinite(speed):
             raise UsageError(f"a speed of {speed} m/s cannot be driven; it must be a finite number")
         stepper = self._stepper
         if stepper.drive.taken_over is None or stepper.drive.taken_over[2] != speed:
+            self._check_travel(stepper.drive.taken_over_at(self.time, speed), target)
             stepper.take_over(speed)
 
     def get_state(self) -> bytes:

@@ -96,7 +96,7 @@ def build(scenario: Scenario) -> Model:
     plane = build_outline(scenario.vessel)
     outline = Outline(frame.points_in(plane.points), plane.open_edges)
     pulled_back = -drive.extremes()[0]
-    tube = Tube(scenario.catheter.bore, wire.length + pulled_back + 10 * scenario.catheter.bore)
+    tube = Tube(scenario.catheter.bore, 2 * wire.length + pulled_back)
     check(scenario, outline, tube, drive)
     width = max(width_at_exit(outline), scenario.wire.diameter)
     law = contact_law(scenario, width)

@@ -163,7 +163,7 @@ def _static_force(pairs: Pairs, toe: float, stiffness: float) -> Floats:
     """(p,), N: the normal force without its damper."""
     u = np.clip(toe - pairs.gap, 0.0, 2 * toe)
     force: Floats = stiffness * (u**2 / (4 * toe) + np.maximum(-pairs.gap - toe, 0.0))
-    return np.where(pairs.normal > 0, force, 0.0)
+    return force
 
 
 def _finite_turns(contact: Contact, old: Snapshot, new: Snapshot, inertia: Floats) -> float:

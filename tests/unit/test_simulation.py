@@ -181,6 +181,16 @@ def test_a_speed_must_be_finite(cornered: Simulation) -> None:
         cornered.step(0.1, speed=float("nan"))
 
 
+@pytest.mark.parametrize("speed", [0.1, -0.1])
+def test_the_end_of_the_wire_stays_in_the_catheter(cornered: Simulation, speed: float) -> None:
+    """60 mm of wire: a second at 100 mm/s either way would take its end out of where it is guided."""
+    cornered.reset()
+    with pytest.raises(UsageError, match="guided from"):
+        cornered.step(1.0, speed=speed)
+    assert cornered.time == 0.0
+    assert cornered.step(1.0)["insertion_depth"] == pytest.approx(2e-3)
+
+
 def test_what_cannot_start_is_a_bad_scenario() -> None:
     with pytest.raises(ScenarioError, match=r"catheter\.bore"):
         Simulation(scenario(catheter={"bore": 0.3e-3}))

@@ -12,6 +12,7 @@
  * Normal force: penalty with a quadratic toe and a damper that grows with penetration, never pulling [Sharei et al.
  * 2019, Eqs. 4-5; damper as in Hunt and Crossley 1975]. Tangential force: Coulomb with an elastic tangential spring and
  * return mapping, so that a stuck contact does not creep at all [in place of Eq. 6].
+ * The tangent leaves out only how the rate changes with place, which is below a thousandth of the stiffness.
  * Both act on the wire's axis (thin wire: no moment r*f), and slip is that of the axis, so friction cannot add energy.
  */
 
@@ -65,6 +66,7 @@ static double smooth_slope(double x) { x = clamp(x, 0, 1); return 6 * x * (1 - x
 typedef struct {
     double normal, tangential;      /* N; tangential: on the wire, along increasing slip (so it opposes slip) */
     double d_gap, d_rate;           /* d normal / d gap, d normal / d rate */
+    double stiffness;               /* N/m, of the normal spring here, without damper and held share */
     double d_slip, d_normal;        /* d tangential / d slip, d tangential / d normal */
     double elastic;                 /* m, the slip that the tangential spring keeps */
     double energy;                  /* J, in the normal and the tangential spring */
@@ -82,6 +84,7 @@ static Law contact_law(const System *sys, double gap, double rate, double elasti
     law.normal = pushing ? depth * modulus : 0;
     law.d_gap = pushing ? -(slope > held ? slope : held) * modulus : 0;
     law.d_rate = pushing ? -depth * sys->damping : 0;
+    law.stiffness = pushing ? slope * sys->stiffness : 0;
     law.energy = sys->stiffness * (u * u * u / (12 * toe) + deep * (toe + 0.5 * deep));
 
     /* A spring that softens from 0.9 of the limit on and is at the limit at 1.1: force and stiffness are continuous. */
@@ -106,7 +109,7 @@ static void store(Pairs *p, int i, double gap, const Law *law, double weight, do
     p->gap[i] = gap; p->normal[i] = law->normal; p->tangential[i] = law->tangential;
     p->weight[i] = weight; p->energy[i] = weight * law->energy;
     p->slip[i] = slip; p->elastic[i] = law->elastic;
-    p->normal_stiffness[i] = -weight * law->d_gap; p->tangential_stiffness[i] = -weight * law->d_slip;
+    p->normal_stiffness[i] = weight * law->stiffness; p->tangential_stiffness[i] = -weight * law->d_slip;
 }
 
 /* Beside a corner that points into the lumen, a node that is behind the wall by more than a quarter of its distance from the
@@ -128,7 +131,7 @@ static void node_pair(const System *sys, const Motion *m, Pairs *p, int i, doubl
     const double a = (along - sys->wall_lo[w] + at_lo * gap) / sys->wall_fade_lo[w];
     const double z = (sys->wall_hi[w] - along + at_hi * gap) / sys->wall_fade_hi[w];
     const double weight = smooth(a) * smooth(z);
-    Law law = {0, 0, 0, 0, 0, 0, 0, 0};
+    Law law = {0, 0, 0, 0, 0, 0, 0, 0, 0};
     const double held = m->predicted ? p->held[i] : 0;
     if ((gap >= sys->toe && held == 0) || weight <= 0) { store(p, i, gap, &law, weight, slip); return; }
     const double rate = nx * (v[0] - ay * v[2]) + ny * (v[1] + ax * v[2]);
@@ -216,7 +219,7 @@ static void corner_pair(const System *sys, const Motion *m, Pairs *p, int i, dou
     if (b < last) w_far = joint_weight(m, b, b + 1, sys->half_length[b], sys->joint_blend[b], 1, &pl, far);
     if (b > 0) w_near = joint_weight(m, b, b - 1, sys->half_length[b], sys->joint_blend[b - 1], -1, &pl, near);
     const double weight = w_far * w_near;
-    Law law = {0, 0, 0, 0, 0, 0, 0, 0};
+    Law law = {0, 0, 0, 0, 0, 0, 0, 0, 0};
     const double held = m->predicted ? p->held[i] : 0;
     if ((gap >= sys->toe && held == 0) || weight <= 0) { store(p, i, gap, &law, weight, slip); return; }
 
