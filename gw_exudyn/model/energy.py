@@ -72,7 +72,9 @@ def snapshot(wire: Wire, motion: Motion, push: float, travel: float) -> Snapshot
 
 def relative_angles(angle: Floats) -> Floats:
     """(n,), rad: of each segment against the one before; the first against the catheter."""
-    return np.diff(angle, prepend=0.0)
+    relative = angle.copy()
+    relative[1:] -= angle[:-1]
+    return relative
 
 
 def joint_moments(wire: Wire, motion: Motion) -> Floats:
