@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+
 import numpy as np
 
-from gw_exudyn.engine.stepper import Stepper
+from gw_exudyn.engine.stepper import Release, Stepper
 from gw_exudyn.result import SnapEvent, Status, StatusReport
 
 DEEPEST = 0.3
@@ -18,7 +22,7 @@ ENERGY_FLOOR = 1e-7
 as much."""
 
 SNAP_SHARE = 0.02
-"""A solver step that loses more than this share of the largest work to the integrator is a snap-through."""
+"""A nominal step that loses more than this share of the largest work to dampers and integrator is a snap-through."""
 
 
 def trust_report(stepper: Stepper, *, converged: bool) -> StatusReport | None:
@@ -49,16 +53,22 @@ def energy_report(stepper: Stepper) -> StatusReport | None:
 
 
 def snap_events(stepper: Stepper) -> list[SnapEvent]:
-    """Snap-throughs of the run so far: runs of solver steps that each lost much at once, with the energy they set
-    free."""
+    """Snap-throughs of the run so far: nominal steps, or several in a row, in which the wire lost much to its dampers
+    or to the integrator. Quasi-static motion loses next to nothing there."""
     least = max(SNAP_SHARE * stepper.energies.largest_work, ENERGY_FLOOR)
     step = stepper.model.scenario.solver.step
     events: list[SnapEvent] = []
-    for release in stepper.releases:
-        if release.energy <= least:
+    for time, energy in _by_nominal_step(stepper.releases, step):
+        if energy <= least:
             continue
-        if events and release.time - events[-1].time <= step + 1e-9:
-            events[-1] = SnapEvent(events[-1].time, events[-1].released_energy + release.energy)
+        if events and time - events[-1].time <= step * 1.001:
+            events[-1] = SnapEvent(time, events[-1].released_energy + energy)
         else:
-            events.append(SnapEvent(release.time, release.energy))
+            events.append(SnapEvent(time, energy))
     return events
+
+
+def _by_nominal_step(releases: Sequence[Release], step: float) -> Iterator[tuple[float, float]]:
+    """(end of the nominal step, s; energy released in it, J), in order."""
+    for index, group in groupby(releases, key=lambda release: math.ceil(release.time / step - 1e-6)):
+        yield index * step, sum(release.energy for release in group)

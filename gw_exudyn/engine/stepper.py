@@ -32,7 +32,7 @@ _SAME_TIME = 1e-9
 
 @dataclass(frozen=True)
 class Release:
-    """Energy, J, that one solver step lost to the integrator: a snap-through that it skipped. time : s."""
+    """Energy, J, that one solver step lost to dampers and to the integrator, and not to friction. time : s, its end."""
 
     time: float
     energy: float
@@ -137,13 +137,13 @@ class Stepper:
         self.steps += 1
         self.smallest_step = min(self.smallest_step, step)
         self._time = time
-        before, lost = self._instant, self.energies.numerical_loss
+        before, lost = self._instant, self.energies.numerical_loss + self.energies.damping_loss
         self._instant = self._look()
         acceleration = np.asarray(self.system.mbs.systemData.GetODE2Coordinates_tt())[HUB_COORDINATES:].reshape(-1, 3)
         self.energies = advanced(
             self.energies, self.contact, self._wall_start, before, self._instant, acceleration, step
         )
-        self.releases.append(Release(time, self.energies.numerical_loss - lost))
+        self.releases.append(Release(time, self.energies.numerical_loss + self.energies.damping_loss - lost))
         self.contact.accept()
         self._prepare()
 

@@ -137,10 +137,9 @@ class Pairs:
         return int(self.struct.capacity)
 
     def __getattr__(self, name: str) -> NDArray[Any]:
-        try:
-            return self._arrays[name][: self.struct.count]
-        except KeyError:
-            raise AttributeError(name) from None
+        if name.startswith("_") or name not in self._arrays:
+            raise AttributeError(name)
+        return self._arrays[name][: self.struct.count]
 
 
 class Motion:
