@@ -96,12 +96,11 @@ class Contact:
         memory, nodes, corners = self.memory, self.nodes, self.corners
         self._node_keys = nodes.body.astype(np.int64) * len(self.walls.length) + nodes.target
         self._corner_keys = corners.body.astype(np.int64) * len(self.walls.corner) + corners.target
-        nodes.start[:] = _recalled(self._node_keys, memory.node_keys, memory.node_slip)
-        nodes.held[:] = _recalled(self._node_keys, memory.node_keys, memory.node_held)
-        corners.held[:] = _recalled(self._corner_keys, memory.corner_keys, memory.corner_held)
-        known = np.isin(self._corner_keys, memory.corner_keys, assume_unique=True)
-        recalled = _recalled(self._corner_keys, memory.corner_keys, memory.corner_pair_slip)
-        corners.start[:] = np.where(known, recalled, memory.corner_slip[corners.target])
+        here, there = _known(self._node_keys, memory.node_keys)
+        nodes.start[here], nodes.held[here] = memory.node_slip[there], memory.node_held[there]
+        corners.start[:] = memory.corner_slip[corners.target]
+        here, there = _known(self._corner_keys, memory.corner_keys)
+        corners.start[here], corners.held[here] = memory.corner_pair_slip[there], memory.corner_held[there]
 
     def evaluate(self, position: float = 1.0, velocity: float = 0.0, *, predicted: bool = False) -> None:
         """Forces and tangent at the present place; tangent = position * d/dq + velocity * d/dq_t.
@@ -122,6 +121,8 @@ class Contact:
         """
         share = 1.0
         for pairs, gap in zip((self.nodes, self.corners), before, strict=True):
+            if not len(gap):
+                continue
             closes = (gap >= self.law.toe) & (pairs.gap < -self.law.toe) & (pairs.weight > _HALF_WAY)
             if closes.any():
                 share = min(share, float((gap[closes] / (gap[closes] - pairs.gap[closes])).min()))
@@ -193,13 +194,13 @@ def first_in_vessel(motion: Motion, wire: Wire) -> int:
     return int(ahead.argmax()) if ahead.any() else len(ahead)
 
 
-def _recalled(keys: Ints, known: Ints, values: Floats) -> Floats:
-    """(len(keys),): the remembered value of each key, 0 for one that is not known."""
-    if not len(known):
-        return np.zeros(len(keys))
-    place = np.minimum(np.searchsorted(known, keys), len(known) - 1)
-    found: Floats = np.where(known[place] == keys, values[place], 0.0)
-    return found
+def _known(keys: Ints, remembered: Ints) -> tuple[Ints, Ints]:
+    """Places in `keys` that are remembered, and their places in `remembered` (both sorted)."""
+    if not len(remembered):
+        return np.zeros(0, np.int64), np.zeros(0, np.int64)
+    place = np.minimum(np.searchsorted(remembered, keys), len(remembered) - 1)
+    here = np.flatnonzero(remembered[place] == keys)
+    return here, place[here]
 
 
 def _numbers(wire: Wire, law: ContactLaw) -> dict[str, float]:

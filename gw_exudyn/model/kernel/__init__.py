@@ -125,6 +125,7 @@ class Pairs:
         }
         self.struct = _Pairs(capacity, 0, *(_pointer(array) for array in self._arrays.values()))
         self.address = ctypes.addressof(self.struct)
+        self.show()
 
     @property
     def count(self) -> int:
@@ -136,10 +137,10 @@ class Pairs:
         """Largest number of pairs that fits."""
         return int(self.struct.capacity)
 
-    def __getattr__(self, name: str) -> NDArray[Any]:
-        if name.startswith("_") or name not in self._arrays:
-            raise AttributeError(name)
-        return self._arrays[name][: self.struct.count]
+    def show(self) -> None:
+        """Make the attributes views of the valid pairs, after their number has changed."""
+        for name, array in self._arrays.items():
+            setattr(self, name, array[: self.struct.count])
 
 
 class Motion:
@@ -204,11 +205,12 @@ class Kernel:
 
     def candidates(self, motion: Motion, sides: Floats, first: int, reach: float, nodes: Pairs, corners: Pairs) -> bool:
         """Fill the lists with the pairs that can touch within `reach` (m) of travel; False when a list is too short."""
-        return bool(
-            self._library.gw_contact_candidates(
-                self._address, motion.address, sides.ctypes.data, first, reach, nodes.address, corners.address
-            )
+        complete = self._library.gw_contact_candidates(
+            self._address, motion.address, sides.ctypes.data, first, reach, nodes.address, corners.address
         )
+        nodes.show()
+        corners.show()
+        return bool(complete)
 
     def nearest(self, motion: Motion, first: int, corners: int) -> tuple[Ints, Ints, Floats]:
         """For each corner the nearest body (-1: none), 1 where it is ahead of the tip, its offset, m (left: +)."""
