@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,10 @@ from gw_exudyn.quantities import QUANTITIES
 
 if TYPE_CHECKING:
     from gw_exudyn.result import Floats, Result
+
+
+LEAST_WORK = 1e-7
+"""Largest work, J, below which an energy error is not measured on it; the floor of the trust check."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +34,7 @@ def metrics(result: Result) -> dict[str, Metric]:
 
 def _tip(result: Result) -> dict[str, Metric]:
     found = {f"final_{name}": _final(result, name) for name in ("tip_x", "tip_y", "tip_angle", "insertion_depth")}
-    found["insertion_depth_max"] = _largest(result, "insertion_depth", "deepest insertion of the run")
+    found["insertion_depth_max"] = _largest(result, "insertion_depth", "deepest insertion, at the outputs")
     path = np.hypot(np.diff(result.values("tip_x")), np.diff(result.values("tip_y")))
     found["tip_path_length"] = Metric(
         float(np.nansum(path)), QUANTITIES["tip_x"].unit, "length of the path of the tip, there and back"
@@ -40,27 +45,41 @@ def _tip(result: Result) -> dict[str, Metric]:
 def _forces(result: Result) -> dict[str, Metric]:
     resultant = np.hypot(result.values("wall_force_x"), result.values("wall_force_y"))
     cases = {
-        "push_force_max": (result.values("push_force"), "largest push force of the run"),
+        "push_force_max": ("push_force", result.values("push_force"), "largest push force", ""),
         "pull_force_max": (
+            "pull_force",
             -result.values("push_force"),
-            "largest pull force (negative push force); zero or less: none",
+            "largest pull force",
+            " (negative push force; zero or less: none)",
         ),
-        "wall_force_max": (result.values("wall_force_max"), "largest force of a single contact with the vessel"),
-        "wall_force_resultant_max": (resultant, "largest resultant force on the vessel"),
-        "tip_force_max": (result.values("tip_force"), "largest contact force on the tip"),
+        "wall_force_max": (
+            "wall_force_max",
+            result.values("wall_force_max"),
+            "largest force of a single contact with the vessel",
+            "",
+        ),
+        "wall_force_resultant_max": ("", resultant, "largest resultant force on the vessel", ""),
+        "tip_force_max": ("", result.values("tip_force"), "largest contact force on the tip", ""),
     }
     found: dict[str, Metric] = {}
-    for name, (values, meaning) in cases.items():
-        value, instant = _peak(values, result.time)
-        found[name] = Metric(value, QUANTITIES["push_force"].unit, meaning)
-        found[f"{name}_time"] = Metric(instant, QUANTITIES["time"].unit, f"time of the {meaning.partition(' (')[0]}")
+    for name, (peak, values, meaning, remark) in cases.items():
+        found |= _with_time(result, name, peak, values, QUANTITIES["push_force"].unit, meaning, remark)
     return found
 
 
 def _contact(result: Result) -> dict[str, Metric]:
     return {
-        "contacts_max": _largest(result, "contacts", "largest number of contacts with the vessel at once"),
-        "penetration_max": _largest(result, "penetration_max", "deepest penetration of the wire's surface into a wall"),
+        "contacts_max": _largest(
+            result, "contacts", "largest number of contacts with the vessel at once, at the outputs"
+        ),
+        **_with_time(
+            result,
+            "penetration_max",
+            "penetration_max",
+            result.values("penetration_max"),
+            QUANTITIES["penetration_max"].unit,
+            "deepest penetration of the wire's surface into a wall",
+        ),
     }
 
 
@@ -74,7 +93,9 @@ def _energy(result: Result) -> dict[str, Metric]:
         "friction_loss": _final(result, "friction_loss"),
         "energy_error_max": Metric(error, unit, "largest magnitude of what the energy balance leaves over"),
         "energy_error_relative": Metric(
-            error / work if work > 0 else float("nan"), "1", "the same over the largest work"
+            error / work if work >= LEAST_WORK else float("nan"),
+            "1",
+            f"the same over the largest work; none where that is below {LEAST_WORK:g} J",
         ),
         "snaps": Metric(float(len(released)), "1", "number of snap-through events"),
         "snap_energy_max": Metric(max(released, default=0.0), unit, "largest energy released by a snap-through"),
@@ -98,6 +119,20 @@ def _final(result: Result, name: str) -> Metric:
 
 def _largest(result: Result, name: str, meaning: str) -> Metric:
     return Metric(_peak(result.values(name), result.time)[0], QUANTITIES[name].unit, meaning)
+
+
+def _with_time(
+    result: Result, name: str, peak: str, values: Floats, unit: str, meaning: str, remark: str = ""
+) -> dict[str, Metric]:
+    """The largest value and its time: `peak` of the result's peaks where it has that, else the largest of `values`."""
+    (value, instant), where = _peak(values, result.time), "at the outputs"
+    kept = result.peaks.get(peak)
+    if kept is not None and math.isfinite(kept[0]):
+        (value, instant), where = kept, "over all steps"
+    return {
+        name: Metric(value, unit, f"{meaning}, {where}{remark}"),
+        f"{name}_time": Metric(instant, QUANTITIES["time"].unit, f"time of the {meaning}, {where}"),
+    }
 
 
 def _peak(values: Floats, time: Floats) -> tuple[float, float]:

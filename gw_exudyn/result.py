@@ -112,6 +112,9 @@ class Result:
         What the solution alone took on the clock.
     counters : dict
         Solver counts of the whole run.
+    peaks : dict of (value in SI, time in s)
+        Largest value over all solver steps, not only over the outputs, by name: `push_force`, `pull_force` (of
+        -push_force), `wall_force_max`, `penetration_max`; empty where the run kept none.
     """
 
     dataset: xr.Dataset
@@ -123,6 +126,7 @@ class Result:
     provenance: dict[str, Any] = field(default_factory=dict)
     wall_time: float = float("nan")
     counters: dict[str, int] = field(default_factory=dict)
+    peaks: dict[str, tuple[float, float]] = field(default_factory=dict)
 
     @classmethod
     def from_samples(
@@ -139,6 +143,7 @@ class Result:
         provenance: Mapping[str, Any] | None = None,
         wall_time: float = float("nan"),
         counters: Mapping[str, int] | None = None,
+        peaks: Mapping[str, tuple[float, float]] | None = None,
     ) -> Result:
         """Make a result of output instants.
 
@@ -158,6 +163,7 @@ class Result:
             provenance={"versions": software_versions(), **(provenance or {})},
             wall_time=float(wall_time),
             counters={name: int(count) for name, count in (counters or {}).items()},
+            peaks={name: (float(value), float(time)) for name, (value, time) in (peaks or {}).items()},
         )
 
     @property
@@ -188,8 +194,11 @@ def software_versions() -> dict[str, str]:
     """Versions of what takes part in a run."""
     from importlib.metadata import PackageNotFoundError, version
 
-    versions = {"python": platform.python_version()}
-    for package in ("gw-exudyn", "exudyn", "numpy", "xarray", "h5netcdf"):
+    import gw_exudyn
+
+    # Its own word, since a checkout on the path is not installed, or is another version than the one that is.
+    versions = {"python": platform.python_version(), "gw-exudyn": gw_exudyn.__version__}
+    for package in ("exudyn", "numpy", "xarray", "h5netcdf"):
         try:
             versions[package] = version(package)
         except PackageNotFoundError:

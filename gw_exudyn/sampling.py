@@ -143,7 +143,7 @@ def _forces(stepper: Stepper, contacts: Mapping[str, Floats]) -> dict[str, Any]:
         "catheter_force_y": catheter[1],
         "catheter_force_normal": normal[~vessel].sum(),
         "contacts": np.count_nonzero(vessel),
-        "penetration_max": stepper.contact.deepest()[0],
+        "penetration_max": stepper.contact.deepest().depth,
     }
 
 

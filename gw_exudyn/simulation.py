@@ -11,11 +11,13 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gw_exudyn.engine.state import from_arrays, pack, to_arrays, unpack
-from gw_exudyn.engine.stepper import Stepper
+from gw_exudyn.engine.stepper import Peaks, Stepper
 from gw_exudyn.errors import UsageError
 from gw_exudyn.model import Model, build
+from gw_exudyn.model.contact import NOWHERE
 from gw_exudyn.model.drive import Drive
 from gw_exudyn.result import Result, Status, StatusReport
 from gw_exudyn.sampling import sample
@@ -60,7 +62,7 @@ class Simulation:
     @property
     def status(self) -> StatusReport:
         """Whether what was run so far can be trusted; if not, what failed, when and where."""
-        return self._stopped or StatusReport(Status.STOPPED, self.time)
+        return self._stopped or energy_report(self._stepper) or StatusReport(Status.STOPPED, self.time)
 
     @property
     def failed(self) -> bool:
@@ -70,7 +72,7 @@ class Simulation:
     @property
     def penetration(self) -> float:
         """Deepest penetration of the wire into a wall at the time reached, m."""
-        return self._stepper.contact.deepest()[0]
+        return self._stepper.contact.deepest().depth
 
     @property
     def counters(self) -> dict[str, int]:
@@ -91,11 +93,12 @@ class Simulation:
         speed : m/s of the drive from now on, positive into the vessel; None keeps what drives it now (at first the
             scenario's own drive).
 
-        When the run cannot go on, it ends early: `status` then says why, and `outputs` are those of the last good step.
+        When the run cannot go on, it ends early: `status` then says why, and `outputs` are those of the step that
+        showed it.
         Raises UsageError for a step that is not positive, a speed that is no number, or a run that has failed before.
         """
-        if not (math.isfinite(dt) and dt > 0):
-            raise UsageError(f"a step of {dt} s cannot be taken; it must be positive")
+        if not (_is_number(dt) and dt >= _SHORTEST):
+            raise UsageError(f"a step of {dt!r} s cannot be taken; it must be positive, {_SHORTEST:g} s at least")
         # Rounded, so that the sum of many small steps is the same time as one large step.
         target = round(self.time + dt, 12)
         if speed is not None:
@@ -109,14 +112,15 @@ class Simulation:
         Raises UsageError for a run that has failed before, and for a drive that would take the wire's end out of the
         catheter on the way; nothing has moved then.
         """
+        if not _is_number(target):
+            raise UsageError(f"{target!r} is no time to run to; it must be a finite number of seconds")
         if self._stopped is not None:
             raise UsageError(f"the run has ended: {self._stopped.sentence()} Reset it, or restore an earlier state.")
         self._check_travel(self._stepper.drive, target)
-        step = self.scenario.solver.step
         while self.time < target - 1e-9:
             # One nominal step at a time, so that a run that went wrong is stopped there and not at the end.
-            stop = min(target, (math.floor(self.time / step + 1e-6) + 1) * step)
-            reached = self._stepper.advance(stop)
+            self._stepper.deepest = NOWHERE
+            reached = self._stepper.advance(min(target, self._stepper.next_grid_time()))
             self._stopped = trust_report(self._stepper, converged=reached)
             if self._stopped is not None:
                 return False
@@ -133,8 +137,8 @@ class Simulation:
             )
 
     def _take_over(self, speed: float, target: float) -> None:
-        if not math.isfinite(speed):
-            raise UsageError(f"a speed of {speed} m/s cannot be driven; it must be a finite number")
+        if not _is_number(speed):
+            raise UsageError(f"a speed of {speed!r} m/s cannot be driven; it must be a finite number")
         stepper = self._stepper
         if stepper.drive.taken_over is None or stepper.drive.taken_over[2] != speed:
             self._check_travel(stepper.drive.taken_over_at(self.time, speed), target)
@@ -153,6 +157,8 @@ class Simulation:
         taken_over = self._stepper.drive.taken_over
         arrays["drive"] = np.array(taken_over if taken_over is not None else ())
         arrays["counts"] = self._stepper.bookkeeping()
+        peaks = self._stepper.all_peaks()
+        arrays["words"] = _as_bytes({"peaks": peaks, "stopped": _as_words(self._stopped)})
         return pack(arrays, self._fingerprint())
 
     def set_state(self, state: bytes) -> None:
@@ -161,13 +167,16 @@ class Simulation:
         arrays = unpack(state, self._fingerprint())
         drive = tuple(float(x) for x in arrays.pop("drive"))
         counts = arrays.pop("counts")
+        words = json.loads(arrays.pop("words").tobytes())
         parts: dict[str, dict[str, Any]] = {"now": {}, "grid": {}}
         for name, array in arrays.items():
             part, _, rest = name.partition(".")
             parts[part][rest] = array
         grid = from_arrays(parts["grid"]) if parts["grid"] else None
-        self._stepper.set_everything(from_arrays(parts["now"]), grid, drive, counts.astype(np.float64))
-        self._stopped = None
+        self._stepper.set_everything(
+            from_arrays(parts["now"]), grid, drive, counts.astype(np.float64), _as_peaks(words["peaks"])
+        )
+        self._stopped = _as_report(words["stopped"])
 
     def _fingerprint(self) -> str:
         text = json.dumps(self.scenario.to_dict(), sort_keys=True)
@@ -191,7 +200,38 @@ class Simulation:
             catheter_outline=self.model.catheter_outline(),
             wall_time=wall_time,
             counters=stepper.counts(),
+            peaks=stepper.peaks,
         )
+
+
+_SHORTEST = 1e-9
+"""Shortest step that can be asked for, s: closer times are one."""
+
+
+def _is_number(value: Any) -> bool:
+    """A finite int or float, and no bool."""
+    return (
+        isinstance(value, int | float | np.integer | np.floating)
+        and not isinstance(value, bool)
+        and math.isfinite(value)
+    )
+
+
+def _as_bytes(words: dict[str, Any]) -> NDArray[np.uint8]:
+    return np.frombuffer(json.dumps(words).encode(), np.uint8)
+
+
+def _as_peaks(words: list[dict[str, list[float]]]) -> tuple[Peaks, Peaks]:
+    now, grid = ({name: (float(value), float(time)) for name, (value, time) in part.items()} for part in words)
+    return now, grid
+
+
+def _as_words(report: StatusReport | None) -> list[Any] | None:
+    return None if report is None else [report.status.name, report.time, report.place, report.detail]
+
+
+def _as_report(words: list[Any] | None) -> StatusReport | None:
+    return None if words is None else StatusReport(Status[words[0]], words[1], words[2], words[3])
 
 
 def simulate(
@@ -220,10 +260,10 @@ def simulate(
             if not going:
                 break
             if should_stop is not None and should_stop():
-                status = StatusReport(Status.STOPPED, simulation.time)
+                status = simulation.status
                 break
     except KeyboardInterrupt:
-        status = StatusReport(Status.STOPPED, simulation.time, detail="interrupted")
+        status = simulation.status
     return simulation.result(samples, status or simulation.finished(), spent)
 
 
@@ -231,7 +271,7 @@ def output_times(scenario: Scenario) -> list[float]:
     """Times, s, of the outputs after the start: every interval, and the end."""
     duration, interval = scenario.drive.duration, scenario.output.interval
     count = math.floor(duration / interval + 1e-9)
-    times = [interval * (i + 1) for i in range(count)]
+    times = [round(interval * (i + 1), 12) for i in range(count)]
     if not times or times[-1] < duration - 1e-9:
         times.append(duration)
     else:

@@ -9,6 +9,7 @@ from itertools import groupby
 import numpy as np
 
 from gw_exudyn.engine.stepper import Release, Stepper
+from gw_exudyn.model.contact import Deepest
 from gw_exudyn.result import SnapEvent, Status, StatusReport
 
 DEEPEST = 0.3
@@ -27,20 +28,43 @@ SNAP_SHARE = 0.02
 
 def trust_report(stepper: Stepper, *, converged: bool) -> StatusReport | None:
     """What is wrong at the time reached, or None. converged : the solver found its way there."""
-    motion, wire = stepper.contact.motion, stepper.model.wire
+    wire, time = stepper.model.wire, stepper.time
     push = f"push force {stepper.instant.push:.4g} N"
-    if not (np.isfinite(motion.q).all() and np.isfinite(stepper.instant.push)):
-        return StatusReport(Status.NOT_FINITE, stepper.time)
-    depth, place = stepper.contact.deepest()
-    if depth > DEEPEST * wire.radius:
-        return StatusReport(Status.TOO_DEEP, stepper.time, place, f"penetration {depth * 1e6:.4g} um, {push}")
-    crossing = stepper.contact.crossing()
-    if crossing is not None:
-        body, wall = crossing
-        return StatusReport(Status.OUTSIDE_LUMEN, stepper.time, f"segment {body} crosses wall {wall}", push)
+    if not (np.isfinite(stepper.contact.motion.q).all() and np.isfinite(stepper.instant.push)):
+        return StatusReport(Status.NOT_FINITE, time)
+    deepest = stepper.deepest
+    if deepest.depth > DEEPEST * wire.radius:
+        sunk = f"penetration {deepest.depth * 1e6:.4g} um, {push}"
+        return StatusReport(Status.TOO_DEEP, time, _place(stepper, deepest), sunk)
+    left = _left(stepper)
+    if left is not None:
+        return StatusReport(Status.OUTSIDE_LUMEN, time, left, push)
     if not converged:
-        return StatusReport(Status.NOT_CONVERGED, stepper.time, place, push)
+        return StatusReport(Status.NOT_CONVERGED, time, _place(stepper, deepest), push)
     return None
+
+
+def _place(stepper: Stepper, deepest: Deepest) -> str:
+    """Where a penetration is, in words."""
+    if deepest.body < 0:
+        return ""
+    model, walls = stepper.model, stepper.model.walls
+    tube = walls.corner_tube if deepest.corner else walls.tube
+    owner, what = ("catheter" if tube[deepest.target] else "vessel"), ("corner" if deepest.corner else "wall")
+    middle = float(model.wire.node_arc_length[deepest.body] + model.wire.node_arc_length[deepest.body + 1]) / 2
+    x, y = model.frame.points_out(stepper.contact.motion.q[deepest.body, :2]) * 1e3
+    return f"{middle * 1e3:.4g} mm from the tip, near ({x:.4g}, {y:.4g}) mm, at a {what} of the {owner}"
+
+
+def _left(stepper: Stepper) -> str | None:
+    """Where the wire's axis has gone through a wall, in words, or None."""
+    crossing = stepper.contact.crossing()
+    if crossing is None:
+        return None
+    body, wall = crossing
+    x, y = stepper.model.frame.points_out(stepper.contact.motion.q[body, :2]) * 1e3
+    owner = "catheter" if stepper.model.walls.tube[wall] else "vessel"
+    return f"segment {body} near ({x:.4g}, {y:.4g}) mm crosses wall {wall}, of the {owner}"
 
 
 def energy_report(stepper: Stepper) -> StatusReport | None:

@@ -46,14 +46,16 @@ def _is_run(folder: Path, given: str) -> bool:
 
 
 def _show_run(folder: Path, as_json: bool) -> int:
-    from gw_exudyn.storage.manifest import read_manifest
+    from gw_exudyn.storage.manifest import as_damaged, read_manifest
 
     content = read_manifest(folder)
+    with as_damaged(folder):
+        facts, numbers = _fact_rows(content), _metric_rows(content)
     if as_json:
         put_json(content)
     else:
-        put_table(_fact_rows(content))
-        put_table(_metric_rows(content), numbers=[1])
+        put_table(facts)
+        put_table(numbers, numbers=[1])
     return 0
 
 

@@ -15,7 +15,7 @@ from typing import TextIO
 import click
 
 from gw_exudyn.cli.console import flush_data, prepare_streams, tell
-from gw_exudyn.errors import GwError, Interrupted, StorageError, UsageError
+from gw_exudyn.errors import GwError, Interrupted, SolverError, StorageError, UsageError
 
 BUG = 1
 """Exit code of what should not happen."""
@@ -27,20 +27,23 @@ def exit_code_of(command: Callable[[], object]) -> int:
     """Run a command and return the exit code of the process; whatever goes wrong is told in a sentence, never by a
     traceback.
     """
-    prepare_streams()
-    with _warnings_as_lines():
-        try:
-            code = _code(command)
-            flush_data()
-        except GwError as error:  # the data did not get through
-            tell(str(error))
-            code = error.exit_code
+    try:
+        prepare_streams()
+        with _warnings_as_lines():
+            try:
+                code = _code(command)
+                flush_data()
+            except GwError as error:  # the data did not get through
+                tell(str(error))
+                code = error.exit_code
+    except KeyboardInterrupt:  # pressed again while the outcome was being told
+        code = Interrupted.exit_code
     return code
 
 
 def _code(command: Callable[[], object]) -> int:
     try:
-        outcome = command()
+        outcome = _uncovered(command)
     except GwError as error:
         tell(str(error))
         return error.exit_code
@@ -62,6 +65,29 @@ def _code(command: Callable[[], object]) -> int:
     except Exception as error:
         return _bug(error)
     return outcome if isinstance(outcome, int) else 0
+
+
+def _uncovered(command: Callable[[], object]) -> object:
+    """What the command returns. A Ctrl-C that comes out of a library as another error is a KeyboardInterrupt again."""
+    try:
+        return command()
+    except Exception as error:
+        if _is_interruption(error):
+            raise KeyboardInterrupt from error
+        raise
+
+
+def _is_interruption(error: BaseException | None) -> bool:
+    """Whether an error stands for a KeyboardInterrupt: it was raised because of one, or its text tells of one."""
+    while error is not None:
+        # Text of ours may quote the user; only what a solver says is searched.
+        quotes = isinstance(error, GwError) and not isinstance(error, SolverError)
+        if isinstance(error, KeyboardInterrupt):
+            return True
+        if not quotes and not isinstance(error, click.ClickException) and "KeyboardInterrupt" in str(error):
+            return True
+        error = error.__cause__ or (None if error.__suppress_context__ else error.__context__)
+    return False
 
 
 def _import_failed(error: ImportError) -> int:

@@ -30,9 +30,12 @@ class Stop:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Give the signals back."""
+        """Give the signals back. Whatever goes wrong after somebody asked twice comes of that, and is a
+        KeyboardInterrupt."""
         for number, handler in self._before.items():
             signal.signal(number, handler if handler is not None else signal.SIG_DFL)
+        if self._count > 1 and isinstance(error, Exception):
+            raise KeyboardInterrupt from error
 
     @property
     def asked(self) -> bool:

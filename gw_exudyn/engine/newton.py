@@ -177,14 +177,16 @@ class Newton:
         return _REFUSE if wrong else _ACCEPT
 
     def _jumped(self) -> bool:
-        """A segment moved much further than the drive: the step skipped a snap-through, whose branch only short steps
+        """A node moved much further than the drive: the step skipped a snap-through, whose branch only short steps
         find."""
-        motion = self._contact.motion
-        moved = float(np.abs(motion.q[:, :2] - motion.q0[:, :2]).max())
+        motion, half = self._contact.motion, self._contact.wire.lengths / 2
+        along = np.abs(motion.q[:, 0] - motion.q0[:, 0] + half * (motion.c - motion.c0)).max()
+        across = np.abs(motion.q[:, 1] - motion.q0[:, 1] + half * (motion.s - motion.s0)).max()
+        moved = max(float(along), float(across))
         return moved > _JUMP * self._contact.wire.radius + _FOLLOWED * abs(self._travel)
 
     def _tunnelled(self) -> bool:
-        return self._contact.deepest()[0] > _TUNNELLED * self._contact.wire.radius
+        return self._contact.deepest().depth > _TUNNELLED * self._contact.wire.radius
 
     def _unstable(self) -> bool:
         wire = self._contact.wire

@@ -72,6 +72,9 @@ def pack(arrays: dict[str, NDArray[np.generic]], fingerprint: str) -> bytes:
 def unpack(data: bytes, fingerprint: str) -> dict[str, NDArray[np.generic]]:
     """The arrays again. Raises UsageError for bytes that are no state, damaged, or of another scenario."""
     head = len(_MAGIC) + 14
+    if not isinstance(data, bytes | bytearray | memoryview):
+        raise UsageError(f"these are no bytes but {type(data).__name__}: no saved state of a simulation")
+    data = bytes(data)
     if len(data) < head or data[:4] != _MAGIC:
         raise UsageError("these bytes are no saved state of a simulation")
     version, length, check = struct.unpack("<HQI", data[4:head])

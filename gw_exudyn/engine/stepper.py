@@ -14,13 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gw_exudyn.engine.assembly import HUB_COORDINATES, System, assemble
+from gw_exudyn.engine.interrupt import after_the_step
 from gw_exudyn.engine.library import exudyn
 from gw_exudyn.engine.newton import Newton
 from gw_exudyn.engine.settings import simulation_settings
 from gw_exudyn.engine.state import State
 from gw_exudyn.errors import SolverError
 from gw_exudyn.model import Model
-from gw_exudyn.model.contact import Contact
+from gw_exudyn.model.contact import NOWHERE, Contact
 from gw_exudyn.model.drive import Drive
 from gw_exudyn.model.energy import Energies, Snapshot, advanced, snapshot, wall_start
 
@@ -28,6 +29,12 @@ Floats = NDArray[np.float64]
 
 _SAME_TIME = 1e-9
 """Times closer than this, s, are one."""
+
+_LEAST_RELEASE = 1e-11
+"""Releases of less, J, are not kept: even a thousand in a row are nothing."""
+
+Peaks = dict[str, tuple[float, float]]
+"""Largest value of a quantity so far, and its time, s."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +62,9 @@ class Stepper:
         if not self._solver.InitializeSolver(self.system.mbs, self._settings):
             raise SolverError("Exudyn refused to initialise its solver for this model")
         self._time = 0.0
-        self._grid: tuple[State, int] | None = None
+        self._grid: tuple[State, int, Peaks] | None = None
+        self.peaks: Peaks = {}
+        self.deepest = NOWHERE
         self._instant: Snapshot = snapshot(model.wire, self.contact.motion, 0.0, 0.0)
         self.energies = Energies()
         self.releases: list[Release] = []
@@ -69,6 +78,8 @@ class Stepper:
         self.steps, self.smallest_step = 0, math.inf
         self._newton.reset_counts()
         self.releases = []
+        self.peaks = {}
+        self.deepest = NOWHERE
         self._grid = None
         self.restore(self._initial)
 
@@ -83,17 +94,21 @@ class Stepper:
 
         Ctrl-C raises KeyboardInterrupt; the state is then that of the last step taken.
         """
-        step = self.model.scenario.solver.step
         if target > self._time + _SAME_TIME:
             self._return_to_grid()
         while self._time < target - _SAME_TIME:
-            following = (math.floor(self._time / step + 1e-6) + 1) * step
+            following = self.next_grid_time()
             if following > target + _SAME_TIME:
-                self._grid = (self.state(), len(self.releases))
+                self._grid = (self.state(), len(self.releases), dict(self.peaks))
                 return self._solve(target)
             if not self._solve(following):
                 return False
         return True
+
+    def next_grid_time(self) -> float:
+        """Time, s, of the next nominal step's end; rounded, so that it prints as a person would write it."""
+        step = self.model.scenario.solver.step
+        return round((math.floor(self._time / step + 1e-6) + 1) * step, 12)
 
     def take_over(self, speed: float) -> None:
         """From now on the drive has this constant speed, m/s. What was run so far stays."""
@@ -102,7 +117,7 @@ class Stepper:
 
     def _return_to_grid(self) -> None:
         if self._grid is not None:
-            state, releases = self._grid
+            state, releases, self.peaks = self._grid
             del self.releases[releases:]
             self.restore(state)
             self._grid = None
@@ -110,19 +125,19 @@ class Stepper:
     def _solve(self, end: float) -> bool:
         """Exudyn's steps from the time reached to `end`."""
         self._end = end
-        pieces = max(1, math.ceil((end - self._time) * self._fastest(end) / (self.contact.reach / 3) - 1e-9))
+        travel = (end - self._time) * self.drive.fastest(self._time, end)
+        pieces = max(1, math.ceil(travel / (self.contact.reach / 3) - 1e-9))
         for piece in np.linspace(self._time, end, pieces + 1)[1:]:
             it = self._solver.it
             it.startTime = it.currentTime = self._time
             it.endTime = float(piece)
             it.maxStepSize = it.initialStepSize = it.currentStepSize = float(piece) - self._time
             self._solver.it = it
-            if not self._solver.SolveSteps(self.system.mbs, self._settings):
+            with after_the_step():
+                solved = self._solver.SolveSteps(self.system.mbs, self._settings)
+            if not solved:
                 return False
         return True
-
-    def _fastest(self, end: float) -> float:
-        return max(abs(self.drive.speed_at(self._time)), abs(self.drive.speed_at(end)))
 
     def _start_trial(self, end: float) -> tuple[float, float]:
         """Exudyn begins a (perhaps repeated) step that ends at `end`: place the hub. Returns the step, s, and the
@@ -143,9 +158,27 @@ class Stepper:
         self.energies = advanced(
             self.energies, self.contact, self._wall_start, before, self._instant, acceleration, step
         )
-        self.releases.append(Release(time, self.energies.numerical_loss + self.energies.damping_loss - lost))
+        released = self.energies.numerical_loss + self.energies.damping_loss - lost
+        if released > _LEAST_RELEASE:
+            self.releases.append(Release(time, released))
+        self._note_peaks(time)
         self.contact.accept()
         self._prepare()
+
+    def _note_peaks(self, time: float) -> None:
+        """Keep the largest values of the run; they may lie between two outputs."""
+        deepest = self.contact.deepest()
+        if deepest.depth > self.deepest.depth:
+            self.deepest = deepest
+        values = {
+            "push_force": self._instant.push,
+            "pull_force": -self._instant.push,
+            "wall_force_max": self.contact.largest_force(),
+            "penetration_max": deepest.depth,
+        }
+        for name, value in values.items():
+            if value > self.peaks.get(name, (0.0, 0.0))[0]:
+                self.peaks[name] = (value, time)
 
     def _look(self) -> Snapshot:
         return snapshot(self.model.wire, self.contact.motion, self.push_force(), self.drive.position_at(self._time))
@@ -213,10 +246,19 @@ class Stepper:
         rows = [value for release in self.releases for value in (release.time, release.energy)]
         return np.array([self.steps, self.smallest_step, *self._newton.counts().values(), kept, *rows])
 
+    def all_peaks(self) -> tuple[Peaks, Peaks]:
+        """The peaks so far, and those at the last grid time."""
+        return self.peaks, (self.peaks if self._grid is None else self._grid[2])
+
     def set_everything(
-        self, now: State, grid: State | None, taken_over: tuple[float, ...], bookkeeping: Floats
+        self,
+        now: State,
+        grid: State | None,
+        taken_over: tuple[float, ...],
+        bookkeeping: Floats,
+        peaks: tuple[Peaks, Peaks],
     ) -> None:
-        """Go on from what `state`, `grid_state`, the drive's `taken_over` and `bookkeeping` gave."""
+        """Go on from what `state`, `grid_state`, the drive's `taken_over`, `bookkeeping` and `all_peaks` gave."""
         counts = len(self._newton.counts())
         self.steps, self.smallest_step = int(bookkeeping[0]), float(bookkeeping[1])
         self._newton.set_counts([int(x) for x in bookkeeping[2 : 2 + counts]])
@@ -226,7 +268,8 @@ class Stepper:
         if taken_over:
             since, position, speed = taken_over
             self.drive = replace(self.model.drive, taken_over=(since, position, speed))
-        self._grid = None if grid is None else (grid, int(bookkeeping[2 + counts]))
+        self.peaks, self.deepest = dict(peaks[0]), NOWHERE
+        self._grid = None if grid is None else (grid, int(bookkeeping[2 + counts]), dict(peaks[1]))
         self.restore(now)
 
     def _first_state(self) -> State:

@@ -12,30 +12,22 @@ from gw_exudyn.model.checks import check
 from gw_exudyn.model.contact import ContactLaw
 from gw_exudyn.model.drive import Drive, build_drive
 from gw_exudyn.model.frame import Frame
+from gw_exudyn.model.law import SINKING, Surroundings, contact_law, law_warnings, surroundings
 from gw_exudyn.model.outline import Outline, build_outline
-from gw_exudyn.model.walls import Tube, Walls, build_walls, tube_polylines, vessel_polylines
-from gw_exudyn.model.wire import DEFAULT_IMPERFECTION, Wire, build_wire, mean_stiffness
+from gw_exudyn.model.walls import Tube, Walls, build_walls, corners_into, tube_polylines, vessel_polylines
+from gw_exudyn.model.wire import DEFAULT_IMPERFECTION, Wire, build_wire
 
 if TYPE_CHECKING:
     from gw_exudyn.scenario import Scenario
 
 Floats = NDArray[np.float64]
 
-TOE = 0.04
-"""Half width of the contact's quadratic onset over the wire's radius."""
-
-SINKING = 0.02
-"""Penetration over the wire's radius that an automatic wall stiffness gives at the estimated peak force."""
-
-DAMPING_TIME = 5e-5
-"""Automatic wall damping over wall stiffness, s, at the penetration SINKING: small beside any step."""
-
 
 @dataclass(frozen=True)
 class Model:
     """What the engine needs, in the catheter's frame (see Frame). All SI.
 
-    width : m, of the lumen at the exit, from which the wall stiffness is estimated. warnings : sentences for the user.
+    around : from which the wall stiffness is estimated. warnings : sentences for the user.
     """
 
     scenario: Scenario
@@ -46,7 +38,7 @@ class Model:
     drive: Drive
     outline: Outline
     tube: Tube
-    width: float
+    around: Surroundings
     warnings: tuple[str, ...]
 
     def vessel_outline(self) -> list[Floats]:
@@ -75,8 +67,8 @@ class Model:
             "wire.imperfection": _or(scenario.wire.imperfection, DEFAULT_IMPERFECTION),
             "wire.mass": float(self.wire.mass.sum()),
             "vessel.walls": int(np.count_nonzero(~self.walls.tube)),
-            "vessel.corners": int(np.count_nonzero(~self.walls.corner_tube)),
-            "vessel.width_at_exit": self.width,
+            "vessel.corners": corners_into(self.outline),
+            "vessel.width_at_exit": self.around.width,
             "catheter.bore": self.tube.bore,
             "contact.wall_stiffness": self.law.stiffness,
             "contact.wall_damping": self.law.damping * SINKING * self.wire.radius,
@@ -98,8 +90,8 @@ def build(scenario: Scenario) -> Model:
     pulled_back = -drive.extremes()[0]
     tube = Tube(scenario.catheter.bore, 2 * wire.length + pulled_back)
     check(scenario, outline, tube, drive)
-    width = max(width_at_exit(outline), scenario.wire.diameter)
-    law = contact_law(scenario, width)
+    around = surroundings(outline)
+    law = contact_law(scenario, around)
     contact = scenario.contact
     walls = build_walls(
         outline,
@@ -109,61 +101,8 @@ def build(scenario: Scenario) -> Model:
         _or(scenario.catheter.friction_coefficient, contact.friction_coefficient),
         seam_reach=6 * wire.radius,
     )
-    return Model(scenario, frame, wire, walls, law, drive, outline, tube, width, _warnings(scenario, wire, width))
-
-
-def contact_law(scenario: Scenario, width: float) -> ContactLaw:
-    """The contact's numbers: the user's where given, else such that the wire sinks in by SINKING of its radius."""
-    radius, contact = scenario.wire.diameter / 2, scenario.contact
-    stiffness = _or(contact.wall_stiffness, automatic_stiffness(scenario, width))
-    damping = _or(contact.wall_damping, DAMPING_TIME * stiffness)
-    return ContactLaw(
-        stiffness=stiffness,
-        tangential_stiffness=_or(contact.tangential_stiffness, stiffness),
-        damping=damping / (SINKING * radius),
-        toe=TOE * radius,
-    )
-
-
-def automatic_stiffness(scenario: Scenario, width: float) -> float:
-    """Wall stiffness, N/m, at which the estimated peak force sinks the wire in by SINKING of its radius."""
-    return estimated_force(scenario, width) / (SINKING * scenario.wire.diameter / 2)
-
-
-def estimated_force(scenario: Scenario, width: float) -> float:
-    """Force, N, of the wire's distal part in a bend as tight as its lumen is wide.
-
-    EI / (2 R^2), the push force of a rod in a circular channel of radius R.
-    """
-    stiffness = mean_stiffness(scenario.wire.bending_stiffness, 5 * width)
-    return stiffness / (2 * width**2)
-
-
-def width_at_exit(outline: Outline) -> float:
-    """Width of the lumen, m, across the catheter's axis just past the exit."""
-    a, b = outline.points, np.roll(outline.points, -1, axis=0)
-    x = 1e-6
-    crosses = (a[:, 0] > x) != (b[:, 0] > x)
-    run = np.where(crosses, b[:, 0] - a[:, 0], 1.0)
-    y = (a[:, 1] + (x - a[:, 0]) / run * (b[:, 1] - a[:, 1]))[crosses]
-    above, below = y[y > 0], y[y <= 0]
-    return float(above.min() - below.max()) if len(above) and len(below) else 0.0
-
-
-def _warnings(scenario: Scenario, wire: Wire, width: float) -> tuple[str, ...]:
-    return (*_too_soft(scenario, width), *_too_coarse(scenario, wire))
-
-
-def _too_soft(scenario: Scenario, width: float) -> list[str]:
-    automatic = automatic_stiffness(scenario, width)
-    given = scenario.contact.wall_stiffness
-    if given is None or given >= automatic / 5:
-        return []
-    sinks = estimated_force(scenario, width) / given / (scenario.wire.diameter / 2)
-    return [
-        f"contact.wall_stiffness: {given:.6g} N/m lets the wire sink into the walls by about "
-        f"{100 * sinks:.0f} % of its radius; auto would take {automatic:.3g} N/m"
-    ]
+    warnings = (*law_warnings(scenario, around), *_too_coarse(scenario, wire))
+    return Model(scenario, frame, wire, walls, law, drive, outline, tube, around, warnings)
 
 
 def _too_coarse(scenario: Scenario, wire: Wire) -> list[str]:

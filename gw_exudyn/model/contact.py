@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,19 @@ class ContactLaw:
     tangential_stiffness: float
     damping: float
     toe: float
+
+
+class Deepest(NamedTuple):
+    """A penetration: depth, m; the body; the wall segment, or the corner, that it is in."""
+
+    depth: float
+    body: int
+    target: int
+    corner: bool
+
+
+NOWHERE = Deepest(0.0, -1, -1, False)
+"""Nothing is inside a wall."""
 
 
 def _no_keys() -> Ints:
@@ -73,6 +87,7 @@ class Contact:
         self.nodes, self.corners = Pairs(_ROOM), Pairs(_ROOM)
         self.memory = ContactMemory(np.zeros(len(walls.corner)), np.zeros(len(walls.corner)))
         self.reach = 5 * wire.radius
+        self._half_bore = float(np.abs(walls.start[walls.tube, 1]).max(initial=0.0)) or np.inf
         self.first = 0
 
     @property
@@ -85,12 +100,16 @@ class Contact:
         """(9 n,): 3 x 3 blocks by rows; d force/dq, weighted as the last `evaluate` was told."""
         return self._kernel.tangent
 
+    def _first_in_vessel(self) -> int:
+        return first_in_vessel(self.motion, self.wire, self._half_bore)
+
     def start_step(self) -> None:
         """Find the pairs for a step that starts at the present place, and recall what they carried."""
         self.motion.start_step()
-        self.first = first_in_vessel(self.motion, self.wire)
+        self.first = self._first_in_vessel()
+        nearest = self._kernel.nearest(self.motion, self.first, len(self.walls.corner))[0]
         while not self._kernel.candidates(
-            self.motion, self.memory.side, self.first, self.reach, self.nodes, self.corners
+            self.motion, self.memory.side, nearest, self.first, self.reach, self.nodes, self.corners
         ):
             self.nodes, self.corners = Pairs(4 * self.nodes.capacity), Pairs(4 * self.corners.capacity)
         memory, nodes, corners = self.memory, self.nodes, self.corners
@@ -156,20 +175,31 @@ class Contact:
         side = self.memory.side
         if not len(side):
             return side
-        body, ahead, offset = self._kernel.nearest(self.motion, first_in_vessel(self.motion, self.wire), len(side))
+        body, ahead, offset = self._kernel.nearest(self.motion, self._first_in_vessel(), len(side))
         fresh = np.where(offset < 0, -1.0, 1.0)
         kept: Floats = np.where((ahead == 1) | (body < 0), 0.0, np.where(side == 0, fresh, side))
         return kept
 
-    def deepest(self) -> tuple[float, str]:
-        """Largest penetration, m (0 when nothing is inside a wall), of the last `evaluate`, and where, in words."""
-        worst, place = 0.0, ""
-        for pairs, what in ((self.nodes, "wall"), (self.corners, "corner")):
-            inside = np.where(pairs.weight > _HALF_WAY, -pairs.gap, -np.inf)
-            if len(inside) and inside.max() > worst:
-                i = int(inside.argmax())
-                worst, place = float(inside[i]), f"segment {pairs.body[i]} at {what} {pairs.target[i]}"
-        return worst, place
+    def deepest(self) -> Deepest:
+        """The deepest penetration of the last `evaluate`."""
+        worst = NOWHERE
+        for pairs, corner in ((self.nodes, False), (self.corners, True)):
+            if not pairs.count:
+                continue
+            inside = np.where(pairs.weight > _HALF_WAY, -pairs.gap, 0.0)
+            i = int(inside.argmax())
+            if inside[i] > worst.depth:
+                worst = Deepest(float(inside[i]), int(pairs.body[i]), int(pairs.target[i]), corner)
+        return worst
+
+    def largest_force(self) -> float:
+        """Largest force, N, of one contact with the vessel, normal and tangential together, of the last `evaluate`."""
+        largest = 0.0
+        for pairs, tube in ((self.nodes, self.walls.tube), (self.corners, self.walls.corner_tube)):
+            if pairs.count:
+                force = np.where(tube[pairs.target], 0.0, pairs.weight * np.hypot(pairs.normal, pairs.tangential))
+                largest = max(largest, float(force.max()))
+        return largest
 
     def is_unstable(self, joint_stiffness: Floats) -> bool:
         """The last `evaluate` found a balance that is no minimum: a compressed wire that has yet to choose a side.
@@ -179,8 +209,8 @@ class Contact:
         return self._kernel.unstable(self.motion, self.nodes, self.corners, joint_stiffness) > 0
 
     def crossing(self) -> tuple[int, int] | None:
-        """(body, wall) where the wire's axis crosses a wall of the vessel at the present place, or None."""
-        return self._kernel.crossing(self.motion, first_in_vessel(self.motion, self.wire))
+        """(body, wall) where the wire's axis crosses a wall of the vessel or the catheter now, or None."""
+        return self._kernel.crossing(self.motion, self._first_in_vessel())
 
 
 _ROOM = 256
@@ -188,10 +218,12 @@ _HALF_WAY = 0.5
 """Weight from which a pair is the one that counts where two share a contact."""
 
 
-def first_in_vessel(motion: Motion, wire: Wire) -> int:
-    """The first body whose distal end is past the catheter's exit; all from there on are in the vessel."""
-    ahead = motion.q[:, 0] + wire.lengths / 2 * motion.c >= -1e-12
-    return int(ahead.argmax()) if ahead.any() else len(ahead)
+def first_in_vessel(motion: Motion, wire: Wire, half_bore: float) -> int:
+    """The first body whose distal end is past the catheter's exit, or beside the catheter; all from there on are in the
+    vessel. half_bore : m."""
+    half = wire.lengths / 2
+    out = (motion.q[:, 0] + half * motion.c >= -1e-12) | (np.abs(motion.q[:, 1] + half * motion.s) > half_bore)
+    return int(out.argmax()) if out.any() else len(out)
 
 
 def _known(keys: Ints, remembered: Ints) -> tuple[Ints, Ints]:

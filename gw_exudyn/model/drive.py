@@ -44,9 +44,12 @@ class Drive:
             return self.taken_over[2]
         return self._table_speed(time, self._row(time))
 
-    def fastest(self) -> float:
-        """Largest speed in the table, m/s, without its sign."""
-        return float(np.abs(self.speed).max())
+    def fastest(self, begin: float, end: float) -> float:
+        """Largest speed, m/s, without its sign, between two times."""
+        speeds = [self.speed_at(begin), self.speed_at(end)]
+        if self.taken_over is None:
+            speeds += list(self.speed[(self.time >= begin) & (self.time <= end)])
+        return float(np.abs(speeds).max())
 
     def extremes(self) -> tuple[float, float]:
         """Least and largest travel up to the end of the table, m; a turning point inside a ramp is found too."""

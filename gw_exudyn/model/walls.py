@@ -56,13 +56,15 @@ class Walls:
 class _Polyline:
     """Wall pieces in a row, the lumen on the left.
 
-    sharp_ends : whether its two ends are sharp. ends_reach : how far, m, a blunt end reaches on. Of an open line only.
+    sharp_ends : whether its two ends are sharp. free_ends : whether they stand free, each a corner of its own.
+    ends_reach : how far, m, a blunt end reaches on. All of an open line only.
     """
 
     points: Floats
     closed: bool
     tube: bool
     sharp_ends: tuple[bool, bool] = (False, False)
+    free_ends: tuple[bool, bool] = (False, False)
     ends_reach: tuple[float, float] = (0.0, 0.0)
 
 
@@ -104,6 +106,11 @@ def vessel_polylines(outline: Outline, tube: Tube) -> list[tuple[Floats, bool]]:
         if i not in outline.open_edges:
             pieces += _outside_tube(outline.points[i], outline.points[(i + 1) % count], tube)
     return _chained(pieces)
+
+
+def corners_into(outline: Outline) -> int:
+    """Number of the outline's corners that point into the lumen."""
+    return int(np.count_nonzero(_turns(_Polyline(outline.points, True, False)) < -_SHARP_FROM))
 
 
 def tube_polylines(tube: Tube) -> list[Floats]:
@@ -167,26 +174,37 @@ def _is_flush(lines: Sequence[tuple[Floats, bool]], lip: Floats) -> bool:
 
 
 def _vessel_line(points: Floats, closed: bool, tube: Tube, seam_reach: float) -> _Polyline:
-    """A wall of the vessel. Where it begins or ends flush at the exit, it reaches back over the catheter's."""
+    """A wall of the vessel. Where it begins or ends flush at the exit, it reaches back over the catheter's; where it
+    does so at a lip, the lip is the corner; any other end stands free, at an open end of the vessel.
+    """
     if closed:
         return _Polyline(points, closed, tube=False)
     h = tube.bore / 2
 
-    def end(point: Floats, neighbour: Floats) -> tuple[bool, float]:
-        at_lip = abs(point[0]) < 2e-9 and abs(abs(point[1]) - h) < 4e-9
-        flush = abs(neighbour[1] - point[1]) < 1e-9 * abs(neighbour[0] - point[0])
-        return (at_lip and not flush), (seam_reach if at_lip and flush else 0.0)
+    def at_lip(point: Floats) -> bool:
+        return bool(abs(point[0]) < 2e-9 and abs(abs(point[1]) - h) < 4e-9)
 
-    (sharp0, reach0), (sharp1, reach1) = end(points[0], points[1]), end(points[-1], points[-2])
-    return _Polyline(points, closed, tube=False, sharp_ends=(sharp0, sharp1), ends_reach=(reach0, reach1))
+    def at_seam(point: Floats, neighbour: Floats) -> bool:
+        return at_lip(point) and bool(abs(neighbour[1] - point[1]) < 1e-9 * abs(neighbour[0] - point[0]))
+
+    lips = at_lip(points[0]), at_lip(points[-1])
+    seams = at_seam(points[0], points[1]), at_seam(points[-1], points[-2])
+    return _Polyline(
+        points,
+        closed,
+        tube=False,
+        sharp_ends=(not seams[0], not seams[1]),
+        free_ends=(not lips[0], not lips[1]),
+        ends_reach=(seam_reach * seams[0], seam_reach * seams[1]),
+    )
 
 
 def _tube_polylines(tube: Tube, flush: Sequence[bool], seam_reach: float) -> list[_Polyline]:
     lower, upper = tube_polylines(tube)
     low_reach, high_reach = (seam_reach if is_flush else 0.0 for is_flush in flush)
     return [
-        _Polyline(lower, False, True, (False, not flush[0]), (0.0, low_reach)),
-        _Polyline(upper, False, True, (not flush[1], False), (high_reach, 0.0)),
+        _Polyline(lower, False, True, (False, not flush[0]), (False, False), (0.0, low_reach)),
+        _Polyline(upper, False, True, (not flush[1], False), (False, False), (high_reach, 0.0)),
     ]
 
 
@@ -202,7 +220,10 @@ def _turns(line: _Polyline) -> Floats:
 
 
 def _corners(line: _Polyline) -> Floats:
-    found: Floats = line.points[_turns(line) < -_SHARP_FROM]
+    pointed = _turns(line) < -_SHARP_FROM
+    if not line.closed:
+        pointed[[0, -1]] = line.free_ends
+    found: Floats = line.points[pointed]
     return found
 
 

@@ -97,7 +97,7 @@ class SolverSpec(Section):
         default=1e-6, description="relative tolerance of the Newton iteration"
     )
     minimum_step: Annotated[float, SMALLEST_STEP] = Field(
-        default=1e-5, description="smallest step to which it is cut back"
+        default=1e-6, description="smallest step to which it is cut back"
     )
 
     @field_validator("minimum_step", mode="after")

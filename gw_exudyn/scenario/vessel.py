@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator
+from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
 from gw_exudyn.scenario.fields import KIND_TAG, Choice, Faults, Form, Section, Table, Text, Whole, wrong
 from gw_exudyn.scenario.kinds import ANGLE, ARC_RADIUS, LEAD_LENGTH, POINT, VESSEL_DIAMETER, VESSEL_LENGTH
@@ -90,6 +90,36 @@ class ArcVessel(Section):
                 f"{facets} facets turn {math.degrees(angle / facets):.4g} deg each, at most 45; take {fewest} or more"
             )
         return facets
+
+    @model_validator(mode="after")
+    def _keeps_clear_of_itself(self) -> Self:
+        import shapely
+
+        if not shapely.Polygon(self._walls()).is_valid:
+            faults = Faults()
+            faults.add(
+                ("angle",),
+                "the arc's end runs across its beginning; take a smaller angle, a shorter lead_out, or a larger radius",
+            )
+            faults.raise_if_any()
+        return self
+
+    def _walls(self) -> list[tuple[float, float]]:
+        """Points of the right wall, then of the left wall back, m."""
+        side = math.copysign(1.0, self.angle)
+        course = [(0.0, 0.0, 0.0)] if self.lead_in > 0 else []
+        for i in range(self.facets + 1):
+            turn = self.angle * i / self.facets
+            x, y = self.radius * side * math.sin(turn), self.radius * side * (1 - math.cos(turn))
+            course.append((self.lead_in + x, y, turn))
+        if self.lead_out > 0:
+            x, y, turn = course[-1]
+            course.append((x + self.lead_out * math.cos(turn), y + self.lead_out * math.sin(turn), turn))
+        half = self.diameter / 2
+        right = [(x + half * math.sin(turn), y - half * math.cos(turn)) for x, y, turn in course]
+        left = [(x - half * math.sin(turn), y + half * math.cos(turn)) for x, y, turn in course]
+        # Rounded, so that a full turn closes on itself whatever the last digit of its sine.
+        return [(round(x, 14), round(y, 14)) for x, y in right + left[::-1]]
 
 
 class PolygonVessel(Section):

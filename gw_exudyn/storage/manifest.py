@@ -8,11 +8,12 @@ from __future__ import annotations
 import json
 import math
 import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gw_exudyn.errors import StorageError
+from gw_exudyn.errors import ScenarioError, StorageError
 from gw_exudyn.metrics import metrics
 from gw_exudyn.result import SnapEvent, Status, StatusReport
 
@@ -23,6 +24,21 @@ MANIFEST = "run.json"
 MARKER = "gw_exudyn run"
 FORMAT_VERSION = 1
 """Raised whenever a reader of the version before would misread a folder."""
+
+_KEYS = (
+    "name",
+    "status",
+    "wall_time",
+    "metrics",
+    "snaps",
+    "counters",
+    "command",
+    "versions",
+    "provenance",
+    "files",
+    "scenario",
+)
+"""What every run.json has had; `peaks` came later."""
 
 
 def manifest(result: Result, command: str | Sequence[str], files: Mapping[str, str]) -> dict[str, Any]:
@@ -40,6 +56,7 @@ def manifest(result: Result, command: str | Sequence[str], files: Mapping[str, s
         },
         "snaps": [{"time": snap.time, "released_energy": snap.released_energy} for snap in result.snaps],
         "counters": dict(result.counters),
+        "peaks": {name: {"value": value, "time": time} for name, (value, time) in result.peaks.items()},
         "command": command if isinstance(command, str) else shlex.join(command),
         "versions": dict(result.provenance.get("versions", {})),
         "provenance": further,
@@ -88,19 +105,51 @@ def read_manifest(folder: Path) -> dict[str, Any]:
             f"{path}: format version {version}, this gw-exudyn reads up to {FORMAT_VERSION}; "
             "update gw-exudyn, or run the scenario again"
         )
+    missing = [key for key in _KEYS if key not in content]
+    if missing:
+        raise StorageError(f"{path}: is damaged, it has no {', '.join(missing)}; run the scenario again")
     return content
+
+
+@contextmanager
+def as_damaged(folder: Path) -> Iterator[None]:
+    """Whatever is missing from or wrong with the content of the folder's run.json, as a StorageError."""
+    try:
+        yield
+    except (KeyError, TypeError, ValueError, AttributeError, ScenarioError) as error:
+        what = f"it has no {error.args[0]}" if isinstance(error, KeyError) and error.args else str(error)
+        raise StorageError(
+            f"{folder / MANIFEST}: is damaged, or of another version ({what}); run the scenario again"
+        ) from error
 
 
 def status_of(content: Mapping[str, Any]) -> StatusReport:
     """The status in a run.json. Raises KeyError, TypeError or ValueError where it is damaged."""
     entry = content["status"]
+    name = str(entry["name"])
+    if name.upper() not in Status.__members__:
+        raise ValueError(f"status {name!r} is not known")
     time = None if entry["time"] is None else float(entry["time"])
-    return StatusReport(Status[str(entry["name"]).upper()], time, str(entry["place"]), str(entry["detail"]))
+    return StatusReport(Status[name.upper()], time, str(entry["place"]), str(entry["detail"]))
 
 
 def snaps_of(content: Mapping[str, Any]) -> tuple[SnapEvent, ...]:
     """The snap-through events in a run.json. Raises KeyError, TypeError or ValueError where they are damaged."""
     return tuple(SnapEvent(float(entry["time"]), float(entry["released_energy"])) for entry in content["snaps"])
+
+
+def peaks_of(content: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
+    """The peaks in a run.json, none where it is older than they are. Raises KeyError, TypeError or ValueError where
+    they are damaged.
+    """
+    return {
+        str(name): (_number(entry["value"]), _number(entry["time"])) for name, entry in content.get("peaks", {}).items()
+    }
+
+
+def _number(value: Any) -> float:
+    """A number of a run.json, in which null stands for one that is not finite."""
+    return float("nan") if value is None else float(value)
 
 
 def _status_entry(report: StatusReport) -> dict[str, Any]:

@@ -8,8 +8,17 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gw_exudyn.errors import ScenarioError, StorageError
-from gw_exudyn.storage.manifest import MANIFEST, manifest, read_manifest, snaps_of, status_of, to_text
+from gw_exudyn.errors import StorageError
+from gw_exudyn.storage.manifest import (
+    MANIFEST,
+    as_damaged,
+    manifest,
+    peaks_of,
+    read_manifest,
+    snaps_of,
+    status_of,
+    to_text,
+)
 from gw_exudyn.storage.netcdf import DATA, from_netcdf, to_netcdf
 from gw_exudyn.storage.run_folder import recovered, replaced_folder, write_file
 from gw_exudyn.storage.series import SERIES, series_text
@@ -75,7 +84,7 @@ def _read(folder: Path) -> Result:
 
     content = read_manifest(folder)
     dataset, walls = _read_data(folder, content)
-    try:
+    with as_damaged(folder):
         return Result(
             dataset=dataset,
             status=status_of(content),
@@ -83,15 +92,11 @@ def _read(folder: Path) -> Result:
             snaps=snaps_of(content),
             vessel_outline=walls["vessel_wall"],
             catheter_outline=walls["catheter_wall"],
-            provenance={**content["provenance"], "versions": content["versions"], "command": content["command"]},
+            provenance={**content["provenance"], "versions": dict(content["versions"]), "command": content["command"]},
             wall_time=float("nan") if content["wall_time"] is None else float(content["wall_time"]),
-            counters=content["counters"],
+            counters={str(name): int(count) for name, count in content["counters"].items()},
+            peaks=peaks_of(content),
         )
-    except (KeyError, TypeError, ValueError, AttributeError, ScenarioError) as error:
-        raise StorageError(
-            f"{folder / MANIFEST}: damaged, or of another version ({type(error).__name__}: {error}); "
-            "run the scenario again"
-        ) from error
 
 
 def _draw(result: Result, folder: Path) -> None:
@@ -117,9 +122,11 @@ def _rendered(result: Result) -> dict[str, bytes]:
 
 def _read_data(folder: Path, content: dict[str, Any]) -> tuple[Any, dict[str, tuple[Floats, ...]]]:
     path = folder / DATA
+    with as_damaged(folder):
+        expected = content["files"][DATA]["sha256"]
     try:
         digest = hashlib.sha256(path.read_bytes()).hexdigest()
-        if digest != content["files"][DATA]["sha256"]:
+        if digest != expected:
             raise StorageError(
                 f"{path}: damaged or half-copied, it is not the file that {MANIFEST} was written for; "
                 "copy it again or run again"

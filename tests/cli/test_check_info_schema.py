@@ -28,6 +28,21 @@ drive: {kind: speed, speed: 2 mm/s, distance: 60 mm}
 """
 
 
+@pytest.fixture
+def damaged(gw, solver):
+    """Write a run, change the content of its run.json, and give the folder."""
+
+    def change_run(change):
+        gw("run", "straight", "-q", "--no-figures")
+        file = Path("results/runs/straight/run.json")
+        content = json.loads(file.read_text())
+        change(content)
+        file.write_text(json.dumps(content))
+        return str(file.parent)
+
+    return change_run
+
+
 @pytest.mark.parametrize("name", list_shipped())
 def test_every_shipped_scenario_passes(gw, name):
     outcome = gw("check", name)
@@ -116,6 +131,43 @@ def test_info_of_a_run(gw, solver):
     assert "The run reached its end" in outcome.out
     assert "largest push force" in outcome.out
     assert json.loads(gw("info", "results/runs/straight/run.json", "--json").out)["name"] == "straight"
+
+
+@pytest.mark.parametrize("arguments", [("info",), ("info", "--json"), ("plot",)])
+@pytest.mark.parametrize(
+    "key",
+    [
+        "name",
+        "status",
+        "wall_time",
+        "metrics",
+        "snaps",
+        "counters",
+        "command",
+        "versions",
+        "provenance",
+        "files",
+        "scenario",
+    ],
+)
+def test_a_run_json_that_lacks_a_key_is_damaged(gw, damaged, arguments, key):
+    outcome = gw(*arguments, damaged(lambda content: content.pop(key)))
+    assert outcome.code == 7
+    assert f"run.json: is damaged, it has no {key};" in outcome.err
+    assert outcome.out == ""
+
+
+@pytest.mark.parametrize("change", [lambda c: c.update(versions=None), lambda c: c.update(status={"name": "lost"})])
+@pytest.mark.parametrize("arguments", [("info",), ("plot",)])
+def test_a_run_json_with_other_content_is_damaged(gw, damaged, arguments, change):
+    outcome = gw(*arguments, damaged(change))
+    assert outcome.code == 7
+    assert "run.json: is damaged" in outcome.err
+
+
+def test_what_lacks_within_is_named(gw, damaged):
+    assert "(it has no sentence);" in gw("info", damaged(lambda content: content["status"].pop("sentence"))).err
+    assert "(it has no place);" in gw("plot", damaged(lambda content: content["status"].pop("place"))).err
 
 
 @pytest.mark.parametrize("arguments", [("info", "."), ("plot", "."), ("plot", "nowhere")])

@@ -47,6 +47,39 @@ def test_every_error_has_its_exit_code_and_a_sentence(error, code, capsys):
     assert str(error).splitlines()[:1] == [] or code in (1, 4, 7, 130) or str(error) in err
 
 
+def caused(error, cause):
+    error.__cause__ = cause
+    return error
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        RuntimeError("Error in Python function: KeyboardInterrupt: \n  at line 3"),
+        SolverError("Exudyn failed: KeyboardInterrupt"),
+        caused(ValueError("no step"), KeyboardInterrupt()),
+    ],
+)
+def test_an_interruption_in_another_guise_is_one(error, capsys):
+    def fails():
+        raise error
+
+    assert outcome.exit_code_of(fails) == 130
+    assert capsys.readouterr().err == "interrupted\n"
+
+
+def test_a_file_named_after_the_interruption_is_none(gw):
+    assert gw("check", "KeyboardInterrupt.yaml").code == 3
+
+
+def test_ctrl_c_while_the_outcome_is_told_ends_with_130(monkeypatch):
+    def pressed(_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(outcome, "tell", pressed)
+    assert outcome.exit_code_of(lambda: 1 / 0) == 130
+
+
 def test_a_bug_leaves_its_traceback_in_a_file(capsys, monkeypatch, tmp_path):
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
 

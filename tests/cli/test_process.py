@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -106,3 +108,42 @@ def test_a_name_beyond_ascii_comes_through(tmp_path):
     done = gw("check", str(file), PYTHONUTF8="1")
     assert done.returncode == 3
     assert "größe.yaml:2: wire" in done.stderr
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are sent in another way there")
+@pytest.mark.parametrize("pause", [0.0, 0.3], ids=["at once", "a moment later"])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_second_signal_gives_the_run_up(tmp_path, number, pause):
+    # One output in the whole run, so that the first signal has nothing to stop at before the second comes.
+    overrides = ("--set", "solver.step=0.5 ms", "--set", "output.interval=35 s")
+    process = subprocess.Popen(
+        [sys.executable, "-m", "gw_exudyn", "run", "corner90-universal", *overrides, "--out", "run"],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=ENVIRONMENT,
+    )
+    try:
+        first = process.stderr.readline()
+        assert "simulating" in first
+        time.sleep(1.0)
+        process.send_signal(number)
+        assert "stopping" in process.stderr.readline()
+        time.sleep(pause)
+        process.send_signal(number)
+        out, err = process.communicate(timeout=60)
+    finally:
+        process.kill()
+        process.wait()
+    assert process.returncode == 130, err
+    assert err.splitlines()[-1] == "interrupted"
+    assert "mistake" not in err
+    assert "Traceback" not in out + err
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_run_from_the_source_knows_its_version():
+    code = "from gw_exudyn.result import software_versions; print(software_versions()['gw-exudyn'])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=ENVIRONMENT)
+    assert done.stdout.strip() == gw_exudyn.__version__

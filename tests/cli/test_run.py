@@ -135,6 +135,21 @@ def test_ctrl_c_twice_gives_up(gw, solver):
     assert not Path("results/runs/straight").exists()
 
 
+def test_an_error_of_any_type_after_ctrl_c_twice_is_an_interruption(gw, solver):
+    def in_the_guise_of_the_solver():
+        os.kill(os.getpid(), signal.SIGINT)
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+        except KeyboardInterrupt:
+            raise RuntimeError("the solver failed") from None
+
+    solver.during = in_the_guise_of_the_solver
+    outcome = gw("run", "straight", "--no-figures")
+    assert outcome.code == 130
+    assert outcome.err.endswith("interrupted\n")
+    assert not Path("results/runs/straight").exists()
+
+
 def test_the_signals_are_given_back(gw, solver):
     before = signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGTERM)
     gw("run", "straight", "-q", "--no-figures")

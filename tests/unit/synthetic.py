@@ -137,6 +137,7 @@ def made_up_result(
     wire: StandInWire | None = None,
     status: StatusReport | None = None,
     snaps: tuple[SnapEvent, ...] = (SnapEvent(17.3, 2.1e-6),),
+    peaks: dict[str, tuple[float, float]] | None = None,
 ) -> Result:
     """A run that pushes at 2 mm/s to `deepest` (and back with `pull_back`); contact forces are a few times `scale`
     (N).
@@ -158,4 +159,5 @@ def made_up_result(
         provenance={"note": "made up"},
         wall_time=1.25,
         counters={"steps": 800, "newton_iterations": 3200},
+        peaks=peaks or {},
     )

@@ -237,8 +237,8 @@ def test_a_wire_that_a_trial_carries_across_a_corner_is_pushed_back_to_its_side(
     settle(contact)
     force = force_at(contact, shifted(q, 3 * MM, side * 1.6 * RADIUS))
     assert side * force[:, 1].sum() < -LAW.stiffness * 1.4 * RADIUS
-    assert contact.deepest()[0] == pytest.approx(1.5 * RADIUS)
-    assert contact.deepest()[1] == "segment 4 at corner 0"
+    assert contact.deepest().depth == pytest.approx(1.5 * RADIUS)
+    assert contact.deepest()[1:] == (4, 0, True)
 
 
 def test_before_it_is_passed_a_corner_pushes_the_tip_away_on_either_side():
@@ -310,14 +310,18 @@ def test_behind_the_exit_the_catheter_counts_and_before_it_the_vessel():
     points = np.array([(-5, -2), (30, -2), (30, 2), (-5, 2)]) * MM
     walls = build_walls(Outline(points, frozenset({1})), Tube(1.2 * MM, 0.1), RADIUS, MU, MU, 0)
     contact = at_rest(wire, walls, q)
-    assert first_in_vessel(contact.motion, wire) == 3
+    assert first_in_vessel(contact.motion, wire, 0.6 * MM) == 3
     contact.reach = 5 * MM
     contact.start_step()
     tube = walls.tube[contact.nodes.target]
     assert (tube == (contact.nodes.body < 3)).all()
     assert set(contact.nodes.body[tube]) == {0, 1, 2}
     assert set(contact.nodes.body[~tube]) == {3, 4, 5}
-    assert first_in_vessel(at_rest(wire, walls, shifted(q, -10 * MM)).motion, wire) == 6
+    behind = at_rest(wire, walls, shifted(q, -10 * MM)).motion
+    assert first_in_vessel(behind, wire, 0.6 * MM) == 6
+    # A tip that hooks back beside the catheter is not in it.
+    behind.q[-1, 1] = 1 * MM
+    assert first_in_vessel(behind, wire, 0.6 * MM) == 5
 
 
 def test_a_segment_in_the_catheter_meets_no_corner_of_the_vessel():
@@ -372,7 +376,7 @@ def test_leaving_through_an_open_end_is_no_crossing():
     assert crossing(box(1), (12.5 * MM, 0.0), 0.0) is None
 
 
-def test_the_catheters_own_walls_are_not_crossed():
+def test_a_wire_that_goes_through_its_catheters_wall_is_found_too():
     assert crossing(box(1), (-5 * MM, 0.0), 0.1) is None
     walls = box()
-    assert crossing(replace(walls, tube=np.ones_like(walls.tube)), (0.2 * MM, 0.0), 0.4) is None
+    assert crossing(replace(walls, tube=np.ones_like(walls.tube)), (0.2 * MM, 0.0), 0.4) is not None

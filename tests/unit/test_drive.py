@@ -61,8 +61,13 @@ def test_a_constant_speed_starts_at_once():
     assert constant.position_at(30.0) == pytest.approx(0.06)
 
 
-def test_the_fastest_speed_counts_both_ways():
-    assert PHASES.fastest() == 4e-3
+def test_the_fastest_speed_between_two_times_counts_both_ways_and_in_between():
+    end = float(PHASES.time[-1])
+    assert PHASES.fastest(0.0, end) == 4e-3
+    peak = drive((0, 0), (1, -5e-3), (2, 0))
+    assert peak.fastest(0.0, 2.0) == 5e-3
+    assert peak.fastest(0.0, 0.5) == pytest.approx(2.5e-3)
+    assert peak.taken_over_at(0.5, 1e-3).fastest(0.5, 2.0) == 1e-3
 
 
 def test_extremes_of_there_and_back():

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from synthetic import FROM_TIP, StandInScenario, made_up_result, sample
 
-from gw_exudyn.metrics import metrics
+from gw_exudyn.metrics import LEAST_WORK, metrics
 from gw_exudyn.result import Result, SnapEvent, Status, StatusReport
+from gw_exudyn.trust import ENERGY_FLOOR
 
 
-def small(snaps=(), **series):
+def small(snaps=(), peaks=None, **series):
     """A result of as many instants, one second apart, as each given series has values."""
     count = len(next(iter(series.values())))
     samples = [
@@ -23,6 +24,7 @@ def small(snaps=(), **series):
         node_arc_length=FROM_TIP,
         joint_arc_length=FROM_TIP[:-1],
         snaps=snaps,
+        peaks=peaks,
     )
 
 
@@ -43,6 +45,34 @@ def test_peaks_come_with_their_times():
     assert (found["wall_force_resultant_max"], found["wall_force_resultant_max_time"]) == (pytest.approx(5.0), 1.0)
 
 
+def test_peaks_over_all_steps_go_before_those_at_the_outputs():
+    kept = {
+        "push_force": (0.9, 0.4),
+        "pull_force": (0.8, 1.4),
+        "wall_force_max": (0.7, 0.5),
+        "penetration_max": (3e-6, 0.6),
+    }
+    found = metrics(small(peaks=kept, push_force=[0.0, 0.5, -0.7], penetration_max=[0.0, 1e-6, 0.0]))
+    for name, (value, time) in kept.items():
+        name = name.removesuffix("_max") + "_max"
+        assert (found[name].value, found[f"{name}_time"].value) == (value, time)
+        assert "over all steps" in found[name].meaning
+        assert found[f"{name}_time"].meaning.startswith("time of the ")
+        assert "over all steps" in found[f"{name}_time"].meaning
+    assert "at the outputs" in found["tip_force_max"].meaning
+
+
+def test_without_peaks_the_outputs_count_and_the_meaning_says_so():
+    found = metrics(
+        small(peaks={"push_force": (np.nan, np.nan)}, push_force=[0.0, 0.5, -0.7], penetration_max=[0.0, 1e-6, 0.0])
+    )
+    assert (found["push_force_max"].value, found["push_force_max_time"].value) == (0.5, 1.0)
+    assert (found["penetration_max"].value, found["penetration_max_time"].value) == (1e-6, 1.0)
+    for name in ("push_force_max", "pull_force_max", "wall_force_max", "penetration_max"):
+        assert "at the outputs" in found[name].meaning
+        assert "over all steps" not in found[name].meaning
+
+
 def test_depth_is_the_deepest_and_the_last():
     found = values(small(insertion_depth=[0.0, 0.08, 0.02]))
     assert (found["insertion_depth_max"], found["final_insertion_depth"]) == (0.08, 0.02)
@@ -56,6 +86,16 @@ def test_the_energy_error_is_measured_on_the_largest_work():
 
 def test_without_work_there_is_no_relative_energy_error():
     assert np.isnan(values(small(energy_error=[0.0, 0.0]))["energy_error_relative"])
+
+
+def test_works_too_small_for_the_trust_check_give_no_relative_energy_error():
+    assert LEAST_WORK == ENERGY_FLOOR
+    metric = metrics(small(energy_error=[0.0, 9e-8], insertion_work=[0.0, 0.9e-7]))["energy_error_relative"]
+    assert np.isnan(metric.value)
+    assert "none where that is below 1e-07 J" in metric.meaning
+    assert values(small(energy_error=[0.0, 1e-8], insertion_work=[0.0, -1e-7]))["energy_error_relative"] == (
+        pytest.approx(0.1)
+    )
 
 
 def test_snaps_are_counted_and_the_largest_named():

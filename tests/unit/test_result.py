@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 from synthetic import FROM_TIP, StandInScenario, made_up_result, sample
 
+import gw_exudyn
 from gw_exudyn.quantities import CONTACT_FIELDS, QUANTITIES, SCALARS
-from gw_exudyn.result import Result, Status, StatusReport
+from gw_exudyn.result import Result, Status, StatusReport, software_versions
 
 
 def result_of(samples, **further):
@@ -95,6 +96,18 @@ def test_a_result_without_samples_is_refused():
 def test_walls_must_be_polylines():
     with pytest.raises(ValueError, match=r"wall polyline 0 has shape \(2, 3\)"):
         result_of(samples_at(0.0), vessel_outline=[np.zeros((2, 3))])
+
+
+def test_peaks_are_plain_numbers_and_none_by_default():
+    assert result_of(samples_at(0.0)).peaks == {}
+    peaks = result_of(samples_at(0.0), peaks={"push_force": (np.float64(0.5), 3)}).peaks
+    assert peaks == {"push_force": (0.5, 3.0)}
+    assert {type(number) for number in peaks["push_force"]} == {float}
+
+
+def test_the_version_of_the_package_is_its_own_word(monkeypatch):
+    monkeypatch.setattr(gw_exudyn, "__version__", "9.8.7")
+    assert software_versions()["gw-exudyn"] == "9.8.7"
 
 
 def test_a_result_survives_the_way_to_another_process():

@@ -86,7 +86,7 @@ def test_defaults() -> None:
     assert wire.tip_shape.kind == "straight"
     assert (contact.friction_coefficient, contact.wall_stiffness, contact.wall_damping) == (0.4, None, None)
     assert contact.tangential_stiffness is None
-    assert (solver.step, solver.tolerance, solver.minimum_step) == (0.05, 1e-6, 1e-5)
+    assert (solver.step, solver.tolerance, solver.minimum_step) == (0.05, 1e-6, 1e-6)
     assert scenario.output.interval == 0.1
     assert scenario.catheter.friction_coefficient is None
     assert scenario.name == "scenario"
@@ -188,6 +188,10 @@ def test_numpy_numbers_are_numbers() -> None:
          ["vessel.radius: 2 mm is not beyond half the diameter, 2 mm: the inner wall would vanish"]),
         ({"vessel": {"kind": "arc", "radius": "20 mm", "angle": "90 deg", "diameter": "4 mm", "facets": 1}},
          ["vessel.facets: 1 facets turn 90 deg each, at most 45; take 2 or more"]),
+        ({"vessel": {"kind": "arc", "radius": "10 mm", "angle": "300 deg", "diameter": "4 mm", "lead_in": "30 mm",
+                     "lead_out": "40 mm"}},
+         ["vessel.angle: the arc's end runs across its beginning; take a smaller angle, a shorter lead_out, or a "
+          "larger radius"]),
         ({"catheter": None}, ["catheter: is empty; the catheter is needed: lines of 'key: value' with exit, "
                               "direction, bore, friction_coefficient"]),
         ({"catheter.exit": [0, 0, 0]}, ["catheter.exit: has 3 items; [x, y] is needed"]),
@@ -458,3 +462,36 @@ class TestJsonSchema:
         for name, part in json_schema()["$defs"].items():
             for key, value in part.get("properties", {}).items():
                 assert key == "kind" or value.get("description"), f"{name}.{key}"
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize(
+    ("angle", "lead_in", "lead_out", "clear"),
+    [
+        (300, 30, 40, False),
+        (300, 30, 1, True),
+        (300, 30, 5, False),
+        (300, 0, 0, True),
+        (270, 30, 40, False),
+        (270, 5, 40, True),
+        (180, 30, 40, True),
+        (360, 0, 0, False),
+        (360, 30, 0, False),
+        (340, 0, 0, True),
+        (0.001, 30, 40, True),
+    ],
+)
+def test_an_arc_keeps_clear_of_itself(side: int, angle: float, lead_in: float, lead_out: float, clear: bool) -> None:
+    lengths = {"diameter": "4 mm", "radius": "10 mm", "lead_in": f"{lead_in} mm", "lead_out": f"{lead_out} mm"}
+    vessel = {"kind": "arc", "angle": f"{side * angle} deg", **lengths}
+    if clear:
+        assert made({"vessel": vessel}).vessel.kind == "arc"
+    else:
+        with pytest.raises(ScenarioError, match=r"vessel\.angle: the arc's end runs across its beginning"):
+            made({"vessel": vessel})
+
+
+@pytest.mark.parametrize("radius", ["2.000001 mm", "2.1 mm", "4 m"])
+def test_an_arc_with_a_tight_inner_wall_or_many_facets_is_clear_of_itself(radius: str) -> None:
+    vessel = {"kind": "arc", "angle": "90 deg", "diameter": "4 mm", "radius": radius, "facets": 5000, "lead_in": 0.01}
+    assert made({"vessel": vessel}).vessel.kind == "arc"

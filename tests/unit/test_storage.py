@@ -157,6 +157,24 @@ def test_a_run_without_walls_or_contacts_comes_back(tmp_path):
     assert math.isnan(again.wall_time)
 
 
+def test_peaks_come_back_and_an_older_run_has_none(tmp_path):
+    peaks = {"push_force": (0.5, 3.25), "wall_force_max": (math.inf, 1.0)}
+    folder = write(made_up_result(segments=10, instants=3, peaks=peaks), tmp_path / "run")
+    content = content_of(folder)
+    assert content["peaks"]["push_force"] == {"value": 0.5, "time": 3.25}
+    again = read_run(folder)
+    assert again.peaks["push_force"] == (0.5, 3.25)
+    assert math.isnan(again.peaks["wall_force_max"][0])
+    del content["peaks"]
+    (folder / "run.json").write_text(json.dumps(content))
+    assert read_run(folder).peaks == {}
+
+
+def test_no_relative_energy_error_is_null(tmp_path):
+    idle = made_up_result(segments=10, instants=3, scale=0.0)
+    assert content_of(write(idle, tmp_path / "run"))["metrics"]["energy_error_relative"]["value"] is None
+
+
 def test_a_figure_that_fails_is_a_warning_and_not_the_loss_of_the_run(result, tmp_path, monkeypatch):
     monkeypatch.setattr("gw_exudyn.plots.save.render_figures", lambda _: 1 / 0)
     with pytest.warns(RuntimeWarning, match="figures could not be drawn .*the results are complete"):
@@ -455,10 +473,10 @@ def test_places_that_are_no_run(tmp_path):
         (lambda content: content.update(format_version=2), "format version 2, this gw-exudyn reads up to 1; update"),
         (lambda content: content.update(format_version="1"), "format_version is '1'"),
         (lambda content: content.pop("status"), "damaged.*status"),
-        (lambda content: content["status"].update(name="splendid"), "damaged.*SPLENDID"),
+        (lambda content: content["status"].update(name="splendid"), "damaged.*splendid"),
         (lambda content: content.update(snaps=[{}]), "damaged.*time"),
         (lambda content: content.update(scenario=None), "damaged"),
-        (lambda content: content.update(files={}), r"run\.nc: can't be read"),
+        (lambda content: content.update(files={}), r"damaged.*has no run\.nc"),
     ],
 )
 def test_a_changed_manifest_is_refused(result, tmp_path, change, message):

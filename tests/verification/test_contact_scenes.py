@@ -292,3 +292,73 @@ def test_time_step_and_tolerance_hardly_move_the_tip() -> None:
     for name in ("tip_x", "tip_y"):
         assert coarse.values(name)[-1] == pytest.approx(fine.values(name)[-1], abs=0.02e-3)
     assert coarse.values("push_force")[-1] == pytest.approx(fine.values("push_force")[-1], rel=0.02)
+
+
+def test_a_snug_wire_is_not_squeezed() -> None:
+    """2.5 um of room on either side in bore and lumen: a straight wire slides in with next to no push."""
+    snug = {"kind": "straight", "length": 80e-3, "diameter": 0.365e-3}
+    result = simulate(scenario(vessel=snug, catheter={"bore": 0.365e-3}, wire={"imperfection": 0.0}))
+    assert_trusted(result)
+    assert np.abs(result.values("push_force")).max() < 1e-3
+
+
+def test_a_curved_tip_that_leaves_an_open_end_hooks_its_edge_and_comes_back() -> None:
+    """The wall's end at an open end is a corner: a curved tip leaves round it, drags over it, and is pulled in
+    again."""
+    phases = [{"speed": 2e-3, "distance": 0.030}, {"speed": -2e-3, "distance": 0.024}]
+    result = simulate(
+        scenario(
+            wire={"tip_shape": {"kind": "arc", "length": 10e-3, "angle": math.radians(60)}, "segments": 60},
+            vessel={"kind": "straight", "length": 15e-3, "diameter": 4e-3},
+            drive={"kind": "speed", "phases": phases},
+        )
+    )
+    assert_trusted(result)
+    assert result.values("tip_y").max() > 2e-3
+    kind, x = result.dataset["contact_kind"].values, result.dataset["contact_x"].values
+    assert ((kind == 1) & (np.abs(x - 15e-3) < 1e-6)).any(), "nothing touched the edge"
+    assert result.values("tip_x")[-1] < 7e-3
+
+
+@pytest.mark.parametrize("angle", [90.0, 180.0])
+def test_a_strongly_curved_tip_stays_in_its_catheter(angle: float) -> None:
+    """A J straightened in the bore presses hard on it; the automatic stiffness of the walls allows for that."""
+    result = simulate(
+        scenario(
+            wire={"tip_shape": {"kind": "arc", "length": 6e-3, "angle": math.radians(angle)}, "segments": 120},
+            vessel={"kind": "straight", "length": 60e-3, "diameter": 12e-3},
+            drive={"kind": "speed", "speed": 2e-3, "distance": 0.02},
+        )
+    )
+    assert_trusted(result)
+
+
+def test_a_fold_of_wire_meets_a_corner_on_the_side_where_it_passes() -> None:
+    """A J in a wide vessel folds back beside the catheter's lip: the lip's side is that of the wire that comes out of
+    it."""
+    result = simulate(
+        scenario(
+            wire={"tip_shape": {"kind": "arc", "length": 12e-3, "angle": math.radians(270)}, "segments": 120},
+            vessel={"kind": "straight", "length": 60e-3, "diameter": 14e-3},
+            drive={"kind": "speed", "speed": 2e-3, "distance": 0.026},
+        )
+    )
+    assert_trusted(result)
+    assert result.values("penetration_max").max() < 0.3 * 0.18e-3
+
+
+def test_peaks_do_not_depend_on_the_outputs() -> None:
+    fine, coarse = (simulate(scenario(output={"interval": dt})) for dt in (0.1, 3.0))
+    assert coarse.peaks == fine.peaks
+    assert coarse.peaks["push_force"][0] >= fine.values("push_force").max()
+
+
+def test_a_speed_peak_inside_a_step_is_followed() -> None:
+    """A drive that rushes and rests within one long step ends where it would have ended in short steps."""
+    table = [[0.0, 0.0], [0.5, 0.02], [1.0, 0.0], [2.0, 0.0]]
+    long, short = (
+        simulate(scenario(vessel=bend(60), drive={"kind": "speed", "table": table}, solver={"step": h}))
+        for h in (1.0, 0.05)
+    )
+    assert_trusted(long)
+    assert long.values("tip_x")[-1] == pytest.approx(short.values("tip_x")[-1], abs=20e-6)

@@ -203,10 +203,29 @@ class Kernel:
             self._address, motion.address, nodes.address, corners.address, position, velocity, *self._outputs
         )
 
-    def candidates(self, motion: Motion, sides: Floats, first: int, reach: float, nodes: Pairs, corners: Pairs) -> bool:
-        """Fill the lists with the pairs that can touch within `reach` (m) of travel; False when a list is too short."""
+    def candidates(
+        self,
+        motion: Motion,
+        sides: Floats,
+        nearest: Ints,
+        first: int,
+        reach: float,
+        nodes: Pairs,
+        corners: Pairs,
+    ) -> bool:
+        """Fill the lists with the pairs that can touch within `reach` (m) of travel; False when a list is too short.
+
+        sides, nearest : (k,), of the corners: the side decided for each, and its nearest body.
+        """
         complete = self._library.gw_contact_candidates(
-            self._address, motion.address, sides.ctypes.data, first, reach, nodes.address, corners.address
+            self._address,
+            motion.address,
+            sides.ctypes.data,
+            nearest.ctypes.data,
+            first,
+            reach,
+            nodes.address,
+            corners.address,
         )
         nodes.show()
         corners.show()
@@ -251,7 +270,7 @@ def _load() -> ctypes.CDLL:
     pointer, real, integer = ctypes.c_void_p, ctypes.c_double, ctypes.c_int
     signatures: dict[str, tuple[list[Any], Any]] = {
         "gw_contact_evaluate": ([pointer] * 4 + [real] * 2 + [pointer] * 2, None),
-        "gw_contact_candidates": ([pointer] * 3 + [integer, real] + [pointer] * 2, integer),
+        "gw_contact_candidates": ([pointer] * 4 + [integer, real] + [pointer] * 2, integer),
         "gw_contact_nearest": ([pointer] * 2 + [integer] + [pointer] * 3, None),
         "gw_contact_unstable": ([pointer] * 5, integer),
         "gw_contact_crossing": ([pointer] * 2 + [integer, pointer], integer),

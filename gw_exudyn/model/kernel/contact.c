@@ -112,8 +112,8 @@ static void store(Pairs *p, int i, double gap, const Law *law, double weight, do
     p->normal_stiffness[i] = weight * law->stiffness; p->tangential_stiffness[i] = -weight * law->d_slip;
 }
 
-/* Beside a corner that points into the lumen, a node that is behind the wall by more than a quarter of its distance from the
- * corner has gone round it, on the corner's other side: this wall does not hold it. */
+/* Beside a corner that points into the lumen, a node whose centre is behind the wall by more than a quarter of its distance
+ * from the corner has gone round it, on the corner's other side: this wall does not hold it. */
 static const double PASSING = 4;
 
 /* force (3) += , tangent (9) += derivative of the force: position part times fq, velocity part times fv. */
@@ -127,9 +127,9 @@ static void node_pair(const System *sys, const Motion *m, Pairs *p, int i, doubl
     const double gap = nx * rx + ny * ry - sys->radius, along = tx * rx + ty * ry;
     const double mx = q[0] + ax - q0[0] - h * m->c0[b], my = q[1] + ay - q0[1] - h * m->s0[b];
     const double slip = tx * mx + ty * my;
-    const double behind = gap < 0 ? PASSING : 0, at_lo = sys->wall_sharp[w] & 1 ? behind : 0, at_hi = sys->wall_sharp[w] & 2 ? behind : 0;
-    const double a = (along - sys->wall_lo[w] + at_lo * gap) / sys->wall_fade_lo[w];
-    const double z = (sys->wall_hi[w] - along + at_hi * gap) / sys->wall_fade_hi[w];
+    const double height = gap + sys->radius, behind = height < 0 ? PASSING : 0, at_lo = sys->wall_sharp[w] & 1 ? behind : 0, at_hi = sys->wall_sharp[w] & 2 ? behind : 0;
+    const double a = (along - sys->wall_lo[w] + at_lo * height) / sys->wall_fade_lo[w];
+    const double z = (sys->wall_hi[w] - along + at_hi * height) / sys->wall_fade_hi[w];
     const double weight = smooth(a) * smooth(z);
     Law law = {0, 0, 0, 0, 0, 0, 0, 0, 0};
     const double held = m->predicted ? p->held[i] : 0;
@@ -287,10 +287,19 @@ static int append(Pairs *p, int body, int target, double side)
     return 1;
 }
 
+/* Side on which a corner lies for a body: what was decided when the tip passed it for the stretch of wire that runs past it,
+ * `window` bodies either way of the nearest; where a fold of the wire comes by once more, the side on which it lies there. */
+static double side_for(const double *sides, const int *nearest, int corner, int body, int window, double y)
+{
+    const int away = body - nearest[corner];
+    if (nearest[corner] < 0 || (away <= window && away >= -window)) return sides[corner];
+    return y < 0 ? -1 : 1;
+}
+
 /* Pairs that can touch within `reach` of travel. `first`: the first body whose node is in the vessel, not in the catheter.
  * A node takes part with a wall only from its lumen side, a segment with a corner only from the side it passed on: what lies
- * across a thin septum is not met. `sides` (corners) as in Pairs. Returns 0 when a list is full. */
-EXPORT int gw_contact_candidates(const System *sys, const Motion *m, const double *sides, int first, double reach,
+ * across a thin septum is not met. `sides` (corners) as in Pairs, `nearest` (corners) as gw_contact_nearest gives it. Returns 0 when a list is full. */
+EXPORT int gw_contact_candidates(const System *sys, const Motion *m, const double *sides, const int *nearest, int first, double reach,
                                  Pairs *nodes, Pairs *corners)
 {
     const double limit = sys->radius + sys->toe + reach;
@@ -310,8 +319,9 @@ EXPORT int gw_contact_candidates(const System *sys, const Motion *m, const doubl
             const double dx = sys->corner_x[k] - m->q[3 * b], dy = sys->corner_y[k] - m->q[3 * b + 1];
             const double x = dx * m->c[b] + dy * m->s[b], y = -dx * m->s[b] + dy * m->c[b], over = magnitude(x) - h;
             if (over > limit || y > limit || y < -limit) continue;
-            if (sides[k] * y < 0 && over <= 0) continue;
-            if (!append(corners, b, k, sides[k])) return 0;
+            const double side = side_for(sides, nearest, k, b, 2 + (int)(2 * limit / h), y);
+            if (side * y < 0 && over <= 0) continue;
+            if (!append(corners, b, k, side)) return 0;
         }
     }
     return 1;
@@ -417,15 +427,15 @@ EXPORT int gw_contact_unstable(const System *sys, const Motion *m, const Pairs *
 
 static double cross(double ax, double ay, double bx, double by) { return ax * by - ay * bx; }
 
-/* The first wire segment, from body `first` on, whose axis crosses a wall of the vessel: the wire has left the lumen there.
+/* The first wire segment whose axis crosses a wall of the catheter or, from body `first` on, of the vessel: it has left there.
  * Returns the body, or -1; *wall is the wall crossed. Open ends are no walls, so leaving through them is no crossing. */
 EXPORT int gw_contact_crossing(const System *sys, const Motion *m, int first, int *wall)
 {
-    for (int b = first; b < sys->bodies; b++) {
+    for (int b = 0; b < sys->bodies; b++) {
         const double h = sys->half_length[b], dx = 2 * h * m->c[b], dy = 2 * h * m->s[b];
         const double x = m->q[3 * b] - 0.5 * dx, y = m->q[3 * b + 1] - 0.5 * dy;
         for (int w = 0; w < sys->walls; w++) {
-            if (sys->wall_tube[w]) continue;
+            if (b < first && !sys->wall_tube[w]) continue;
             const double tx = sys->wall_tx[w], ty = sys->wall_ty[w], length = sys->wall_length[w];
             const double ax = x - sys->wall_x[w], ay = y - sys->wall_y[w];
             const double side0 = cross(tx, ty, ax, ay), side1 = cross(tx, ty, ax + dx, ay + dy);
