@@ -13,7 +13,7 @@ Point = tuple[float, float]
 WIRES: dict[str, dict[str, Any]] = {"universal": {"model": "universal-ii"}, "amplatz": {"model": "amplatz-super-stiff"}}
 
 
-def bend60(segments: int, grading: float = 1.0, **wire: Any) -> dict[str, Any]:
+def bend60(segments: int, grading: float = 1.0, step: float = 0.1, **wire: Any) -> dict[str, Any]:
     """A 150 mm wire of 0.36 mm in a channel 4 mm wide with one sharp corner of 60 degrees; 20 mm at 2 mm/s.
 
     EI rises from 1e-6 to 1e-4 N m^2 over the distal 45 mm, its logarithm linearly. The wall stiffness is given, so that
@@ -37,13 +37,16 @@ def bend60(segments: int, grading: float = 1.0, **wire: Any) -> dict[str, Any]:
         "catheter": {"exit": [-5e-3, 0.0], "bore": 4e-3},
         "contact": {"friction_coefficient": 0.4, "wall_stiffness": 2000.0},
         "drive": {"kind": "speed", "speed": 2e-3, "duration": 10.0},
-        "solver": {"step": 0.1},
+        "solver": {"step": step},
         "output": {"interval": 10.0},
     }
 
 
 def insertion(vessel: dict[str, Any], wire: str, segments: int, friction: float, **changes: Any) -> dict[str, Any]:
-    """One of the paper's wires pushed 50 mm into a vessel that begins at the origin, from a catheter of 1.2 mm."""
+    """One of the paper's wires pushed 50 mm into a vessel that begins at the origin, from a catheter of 1.2 mm.
+
+    Steps and wall stiffness are the program's defaults, as a user would run it.
+    """
     return {
         "name": "hard-scene",
         "wire": {**WIRES[wire], "segments": segments, **changes.pop("wire_changes", {})},
@@ -51,7 +54,6 @@ def insertion(vessel: dict[str, Any], wire: str, segments: int, friction: float,
         "catheter": {"exit": [0.0, 0.0], "bore": 1.2e-3},
         "contact": {"friction_coefficient": friction},
         "drive": {"kind": "speed", "speed": 2e-3, "duration": 25.0},
-        "solver": {"step": 0.1},
         "output": {"interval": 1.0},
         **changes,
     }
