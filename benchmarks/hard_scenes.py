@@ -3,7 +3,8 @@
     python benchmarks/hard_scenes.py [--segments 20 100 400] [--only "corner 90"]
 
 Each scene ends, or is stopped by a status that names the reason. A wire that is pushed square against a wall with much
-friction jams in earnest, and short rigid segments jam sooner. Both bend60 and the scenes run with the default step of 50 ms.
+friction jams in earnest, and short rigid segments jam sooner. Both bend60 and the scenes run with the default step of
+50 ms.
 """
 
 from __future__ import annotations

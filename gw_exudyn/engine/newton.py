@@ -19,6 +19,12 @@ _LIMIT = 0.75
 """Largest move of a segment in one Newton step, in radii of the wire. With the signed gap it keeps corners on their
 side."""
 
+_GUESS = 0.25
+"""How far the first guess of a step may move a segment beyond the drive's travel, in radii."""
+
+_NEAR = 0.1
+"""Newton is near its end where its last step moved no segment further than this, in radii."""
+
 _TUNNELLED = 0.5
 """Penetration, in radii, that one step may not reach from less than the trusted depth."""
 
@@ -45,6 +51,7 @@ class Newton:
         self._step, self._travel = 1.0, 0.0
         self._end = 0.0
         self._last: Floats = np.zeros(0)
+        self._last_move = 0.0
         self.reset_counts()
 
     def reset_counts(self) -> None:
@@ -120,12 +127,33 @@ class Newton:
         predicted = iteration < _HELD_ITERATIONS
         if iteration == 0:
             data.SetAECoordinates(self._multipliers)
-            self._evaluate(q, q_t, predicted)
+            q = self._guessed(q, q_t, predicted)
         else:
             q = self._shortened(q, q_t, predicted)
         self._last = q
         self._add_turning()
         mbs.SetObjectParameter(self._system.contact, "forceVector", self._contact.force.reshape(-1))
+
+    def _guessed(self, q: Floats, q_t: Floats, predicted: bool) -> Floats:
+        """Evaluate the first guess, Exudyn's from the last step's motion, but not rushing on after a snap."""
+        self._last_move = 0.0
+        change = q - self._data.GetODE2Coordinates(exudyn().ConfigurationType.StartOfStep)
+        most = _GUESS * self._contact.wire.radius + abs(self._travel)
+        share = min(1.0, most / max(_largest_move(change), 1e-30))
+        place, rate = self._go_back(q, q_t, (share - 1) * change)
+        self._evaluate(place, rate, predicted)
+        return place
+
+    def _go_back(self, q: Floats, q_t: Floats, back: Floats) -> tuple[Floats, Floats]:
+        """Take back a part of Newton's step, in place, rate and acceleration together; the place and rate that
+        remain."""
+        place, rate = q + back, q_t + velocity_factor(self._step) * back
+        if back.any():
+            data = self._data
+            data.SetODE2Coordinates(place)
+            data.SetODE2Coordinates_t(rate)
+            data.SetODE2Coordinates_tt(data.GetODE2Coordinates_tt() + acceleration_factor(self._step) * back)
+        return place, rate
 
     def _evaluate(self, q: Floats, q_t: Floats, predicted: bool) -> None:
         self._move(q, q_t)
@@ -140,34 +168,31 @@ class Newton:
         open no more than closes, so that the next tangent knows of it. Place, rate and acceleration are shortened
         together."""
         change = q - self._last
-        shift = change[HUB_COORDINATES:].reshape(-1, 3)[:, :2]
-        largest = max(float(shift.max()), -float(shift.min()))
-        share = 1.0 if largest <= self._limit else self._limit / largest
+        self._last_move = _largest_move(change)
+        share = min(1.0, self._limit / max(self._last_move, 1e-30))
         before = self._contact.gaps()
         for _ in range(2):
             back = (share - 1) * change
-            place, rate = q + back, q_t + velocity_factor(self._step) * back
-            self._evaluate(place, rate, predicted)
+            self._evaluate(q + back, q_t + velocity_factor(self._step) * back, predicted)
             free = self._contact.share_to_touch(before)
             if free >= 1:
                 break
             share *= free
-        if share < 1:
-            data = self._data
-            data.SetODE2Coordinates(place)
-            data.SetODE2Coordinates_t(rate)
-            data.SetODE2Coordinates_tt(data.GetODE2Coordinates_tt() + acceleration_factor(self._step) * back)
-        return place
+        return self._go_back(q, q_t, back)[0]
 
     def _add_turning(self) -> None:
         """Add to the tangent how the joints' forces turn each segment as it turns, which Exudyn leaves out.
 
         A segment pushed at both ends resists a turn the less, the larger the push: the term that makes columns buckle.
+        Far from the end of the iteration that part is left out, since a tangent without it does not throw the wire
+        about.
         """
         motion, wire = self._contact.motion, self._contact.wire
         on_proximal_end = -np.asarray(self._data.GetAECoordinates())[HUB_COORDINATES:].reshape(-1, 2)
         along = motion.c * on_proximal_end[:, 0] + motion.s * on_proximal_end[:, 1]
         along[:-1] += motion.c[:-1] * on_proximal_end[1:, 0] + motion.s[:-1] * on_proximal_end[1:, 1]
+        if self._last_move > _NEAR * wire.radius:
+            np.minimum(along, 0.0, out=along)
         self._contact.tangent[8::9] += wire.lengths / 2 * along
 
     def _after_newton(self, _mbs: Any, _time: float) -> list[float]:
@@ -191,3 +216,9 @@ class Newton:
     def _unstable(self) -> bool:
         wire = self._contact.wire
         return self._contact.is_unstable(wire.joint_stiffness + velocity_factor(self._step) * wire.joint_damping)
+
+
+def _largest_move(change: Floats) -> float:
+    """Largest component, m, of the segments' moves in a change of Exudyn's coordinates."""
+    shift = change[HUB_COORDINATES:].reshape(-1, 3)[:, :2]
+    return max(float(shift.max()), -float(shift.min()))

@@ -15,7 +15,8 @@ GAMMA = 0.5 + ALPHA_F - ALPHA_M
 BETA = 0.25 * (GAMMA + 0.5) ** 2
 """Constants of the integrator [Arnold and Bruls 2007]."""
 
-MOST_ITERATIONS = 25
+MOST_ITERATIONS = 12
+"""Of Newton's method in a step. Where more are needed, shorter steps are cheaper."""
 
 ABSOLUTE_TOLERANCE = 1e-7
 """Residual, N, that is good enough whatever it was at first: a ten-thousandth of the least force that matters."""
