@@ -32,12 +32,13 @@ def main() -> None:
     print(machine())
     rows, slow, total = [], 0, 0
     for segments in options.segments:
-        base = run(cases.bend60(segments, step=DEFAULT_STEP), 3).work
-        print(f"\nbend60, n = {segments}: {base:.4g} s of processor time per s", flush=True)
         for name, vessel in [*cases.vessels().items(), ("push, hold, pull", cases.vessels()["corner 90"])]:
             if options.only and name != options.only:
                 continue
             for wire in cases.WIRES:
+                # Side by side: the machine's speed drifts.
+                base = run(cases.bend60(segments, step=DEFAULT_STEP), 2).work
+                print(f"bend60, n = {segments}: {base:.4g} s of processor time per s", flush=True)
                 for friction in FRICTIONS:
                     changes = {"drive": cases.PUSH_HOLD_PULL} if name == "push, hold, pull" else {}
                     outcome = run(cases.insertion(vessel, wire, segments, friction, **changes))
