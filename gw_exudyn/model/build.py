@@ -12,7 +12,7 @@ from gw_exudyn.model.checks import check
 from gw_exudyn.model.contact import ContactLaw
 from gw_exudyn.model.drive import Drive, build_drive
 from gw_exudyn.model.frame import Frame
-from gw_exudyn.model.law import SINKING, Surroundings, contact_law, law_warnings, surroundings
+from gw_exudyn.model.law import SINKING, Surroundings, contact_law, law_warnings, surroundings, value_or
 from gw_exudyn.model.outline import Outline, build_outline
 from gw_exudyn.model.walls import Tube, Walls, build_walls, corners_into, tube_polylines, vessel_polylines
 from gw_exudyn.model.wire import DEFAULT_IMPERFECTION, Wire, build_wire
@@ -64,7 +64,7 @@ class Model:
             "wire.longest_segment": float(self.wire.lengths.max()),
             "wire.bending_stiffness_least": min(min(p.value, p.value_end) for p in scenario.wire.bending_stiffness),
             "wire.bending_stiffness_largest": max(max(p.value, p.value_end) for p in scenario.wire.bending_stiffness),
-            "wire.imperfection": _or(scenario.wire.imperfection, DEFAULT_IMPERFECTION),
+            "wire.imperfection": value_or(scenario.wire.imperfection, DEFAULT_IMPERFECTION),
             "wire.mass": float(self.wire.mass.sum()),
             "vessel.walls": int(np.count_nonzero(~self.walls.tube)),
             "vessel.corners": corners_into(self.outline),
@@ -98,7 +98,7 @@ def build(scenario: Scenario) -> Model:
         tube,
         wire.radius,
         contact.friction_coefficient,
-        _or(scenario.catheter.friction_coefficient, contact.friction_coefficient),
+        value_or(scenario.catheter.friction_coefficient, contact.friction_coefficient),
         seam_reach=6 * wire.radius,
     )
     warnings = (*law_warnings(scenario, around), *_too_coarse(scenario, wire))
@@ -113,7 +113,3 @@ def _too_coarse(scenario: Scenario, wire: Wire) -> list[str]:
         f"wire.tip_shape: {shape * 1e3:.6g} mm is shorter than the last segment, {last * 1e3:.6g} mm, and is lost in "
         "part or whole; take more wire.segments, or a wire.grading above 1"
     ]
-
-
-def _or(value: float | None, otherwise: float) -> float:
-    return otherwise if value is None else value

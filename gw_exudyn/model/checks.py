@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from gw_exudyn.errors import Problem, ScenarioError
 from gw_exudyn.model.drive import Drive
+from gw_exudyn.model.law import JUST_AHEAD
 from gw_exudyn.model.outline import Outline
 from gw_exudyn.model.walls import Tube, vessel_polylines
 
@@ -16,9 +17,6 @@ if TYPE_CHECKING:
     from gw_exudyn.scenario import Scenario
 
 Floats = NDArray[np.float64]
-
-_JUST_AHEAD = 1e-6
-"""How far past the exit, m, the lumen is looked at."""
 
 _STEP = 1e-6
 """By how much, m, a wall may stand inside the bore at the exit: far less than the wire notices."""
@@ -47,7 +45,7 @@ def _bore(scenario: Scenario) -> list[Problem]:
 
 def _exit(scenario: Scenario, outline: Outline, tube: Tube) -> list[Problem]:
     """The exit lies in the lumen, and the wire's tip has room there."""
-    if not contains(outline.points, np.array([_JUST_AHEAD, 0.0])):
+    if not contains(outline.points, np.array([JUST_AHEAD, 0.0])):
         x, y = scenario.catheter.exit
         text = (
             f"({_mm(x)}, {_mm(y)}) is outside the lumen; "

@@ -27,7 +27,8 @@ SINKING = 0.02
 DAMPING_TIME = 5e-5
 """Automatic wall damping over wall stiffness, s, at the penetration SINKING: small beside any step."""
 
-_JUST_AHEAD = 1e-6
+JUST_AHEAD = 1e-6
+"""How far past the exit, m, the lumen is looked at."""
 
 
 @dataclass(frozen=True)
@@ -42,12 +43,12 @@ class Surroundings:
 def surroundings(outline: Outline) -> Surroundings:
     """Of an outline in the catheter's frame."""
     a, b = outline.points, np.roll(outline.points, -1, axis=0)
-    across = _crossings(a[:, ::-1] - [0.0, _JUST_AHEAD], b[:, ::-1] - [0.0, _JUST_AHEAD])
+    across = _crossings(a[:, ::-1] - [0.0, JUST_AHEAD], b[:, ::-1] - [0.0, JUST_AHEAD])
     above, below = across[across > 0], across[across <= 0]
     width = float(above.min() - below.max()) if len(above) and len(below) else 0.0
     walls = np.array([i not in outline.open_edges for i in range(len(a))])
     along = _crossings(a[walls], b[walls])
-    in_front = along[along > _JUST_AHEAD]
+    in_front = along[along > JUST_AHEAD]
     return Surroundings(width, float(in_front.min()) if len(in_front) else math.inf)
 
 
@@ -65,11 +66,11 @@ def contact_law(scenario: Scenario, around: Surroundings) -> ContactLaw:
     In a snug bore or lumen the onset is a quarter of the clearance at most: the wire would else be squeezed there.
     """
     radius, contact = scenario.wire.diameter / 2, scenario.contact
-    stiffness = _or(contact.wall_stiffness, automatic_stiffness(scenario, around))
-    damping = _or(contact.wall_damping, DAMPING_TIME * stiffness)
+    stiffness = value_or(contact.wall_stiffness, automatic_stiffness(scenario, around))
+    damping = value_or(contact.wall_damping, DAMPING_TIME * stiffness)
     return ContactLaw(
         stiffness=stiffness,
-        tangential_stiffness=_or(contact.tangential_stiffness, stiffness),
+        tangential_stiffness=value_or(contact.tangential_stiffness, stiffness),
         damping=damping / (SINKING * radius),
         toe=min(TOE * radius, clearance(scenario, around) / 4),
     )
@@ -137,5 +138,6 @@ def _snug(scenario: Scenario, around: Surroundings) -> list[str]:
     ]
 
 
-def _or(value: float | None, otherwise: float) -> float:
+def value_or(value: float | None, otherwise: float) -> float:
+    """The user's value where there is one."""
     return otherwise if value is None else value
