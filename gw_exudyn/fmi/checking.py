@@ -9,6 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 from gw_exudyn.errors import GwError
 from gw_exudyn.fmi.session import FmuSession
@@ -50,6 +51,7 @@ def _fmpy(file: Path) -> list[str]:
 
 
 def _fmutool(file: Path) -> list[str]:
+    _only_fmi2(file, "fmutool")
     run = subprocess.run(
         [sys.executable, "-m", "fmu_manipulation_toolbox", "-input", str(file), "-check"],
         capture_output=True,
@@ -74,14 +76,23 @@ def _runs(file: Path) -> list[str]:
     return [] if first.outputs.tobytes() == second.outputs.tobytes() else ["a second run after a reset differs"]
 
 
-def _libcosim(file: Path) -> list[str]:
+def _only_fmi2(file: Path, checker: str) -> Any:
+    """The FMU's description. Raises NotImplementedError for another version than 2.0."""
     from fmpy import read_model_description
 
     description = read_model_description(str(file), validate=False)
     if description.fmiVersion != "2.0":
-        raise NotImplementedError(f"libcosim has no FMI {description.fmiVersion}")
+        raise NotImplementedError(f"{checker} has no FMI {description.fmiVersion}")
+    return description
+
+
+def _libcosim(file: Path) -> list[str]:
     from libcosimpy.CosimExecution import CosimExecution
+    from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
     from libcosimpy.CosimSlave import CosimLocalSlave
+
+    description = _only_fmi2(file, "libcosim")
+    log_output_level(CosimLogLevel.ERROR)
 
     nanoseconds = round(float(description.defaultExperiment.stepSize) * 1e9)
     execution = CosimExecution.from_step_size(nanoseconds)

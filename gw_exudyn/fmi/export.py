@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import os
@@ -56,7 +57,12 @@ def variables_of(scenario: Scenario, fmi: int, stations: int = STATIONS) -> list
 
 
 def export(
-    scenario: Scenario, file: str | os.PathLike[str], fmi: int = 2, *, stations: int = STATIONS, launch: Launch | None = None
+    scenario: Scenario,
+    file: str | os.PathLike[str],
+    fmi: int = 2,
+    *,
+    stations: int = STATIONS,
+    launch: Launch | None = None,
 ) -> Path:
     """Write the FMU of a scenario and return its file. The same scenario on the same machine gives the same bytes.
 
@@ -80,7 +86,8 @@ def export(
                 archive.writestr(entry, content)
         os.replace(part, target)
     except OSError as error:
-        part.unlink(missing_ok=True)
+        with contextlib.suppress(OSError):
+            part.unlink(missing_ok=True)
         raise StorageError(f"{target}: can't be written: {error.strerror or error}") from error
     return target
 

@@ -1,4 +1,4 @@
-"""FMUs of a small scenario: a coarse wire pushed round the sharp corner, in contact with friction soon."""
+"""FMUs of a small scenario: a coarse wire pushed quickly round a bend, in contact with friction soon."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ if (sys.platform, platform.machine()) not in {("linux", "x86_64"), ("linux", "aa
 from gw_exudyn.fmi.export import export
 from gw_exudyn.scenario import Scenario, load_scenario
 
-OVERRIDES = ("wire.segments=16", "drive.speed=20 mm/s", "drive.distance=60 mm")
+OVERRIDES = ("wire.segments=20", "drive.speed=20 mm/s", "drive.distance=70 mm")
 
 
 @pytest.fixture(scope="session")
 def scenario() -> Scenario:
-    return load_scenario("corner90-universal", OVERRIDES)
+    return load_scenario("arc90", OVERRIDES)
 
 
 @pytest.fixture(scope="session")

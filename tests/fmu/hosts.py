@@ -112,7 +112,7 @@ class Host:
     def get(self, name: str) -> Any:
         variable = self.variables[name]
         getter = getattr(self.calls, f"get{variable.type}")
-        size = variable.shape[0] if getattr(variable, "shape", None) else 1
+        size = int(variable.dimensions[0].start) if variable.dimensions else 1
         values = getter([variable.valueReference], nValues=size) if size > 1 else getter([variable.valueReference])
         values = [x.decode() if isinstance(x, bytes) else x for x in values]
         return values if size > 1 else values[0]

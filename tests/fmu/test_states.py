@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import pytest
 from fmpy.fmi1 import FMICallException
-from hosts import Host
+from hosts import OK, Host
 
 
 def run_on(host):
     rows = []
     for dt in (0.05, 0.03, 0.2):
-        host.step(dt)
+        assert host.step(dt)["status"] == OK
         rows.append(host.outputs())
     return repr(rows)
 
@@ -19,14 +19,14 @@ def run_on(host):
 def test_a_state_goes_on_exactly_here_and_in_another_process(fmu, at):
     values = {"contact.friction_coefficient": 0.3}
     with Host(fmu).start(values) as host:
-        host.step(at)
+        assert host.step(at)["status"] == OK
         assert host.get("wall.contacts") > 0
         state = host.state()
         straight_on = run_on(host)
         host.restore(state, at)
         assert run_on(host) == straight_on
         with Host(fmu).start() as other:  # of another friction, until the state brings its own
-            other.step(0.5)
+            assert other.step(0.5)["status"] == OK
             other.restore(state, at)
             assert run_on(other) == straight_on
             assert other.get("contact.friction_coefficient") == 0.3
@@ -35,12 +35,12 @@ def test_a_state_goes_on_exactly_here_and_in_another_process(fmu, at):
 def test_a_state_keeps_who_drives(fmu):
     with Host(fmu).start() as host:
         host.set("command.speed", 0.01)
-        host.step(0.5)
+        assert host.step(0.5)["status"] == OK
         state = host.state()
         with Host(fmu).start() as other:
             other.restore(state, 0.5)
-            host.step(0.5)
-            other.step(0.5)
+            assert host.step(0.5)["status"] == OK
+            assert other.step(0.5)["status"] == OK
             assert other.get("insertion.depth") == host.get("insertion.depth") == pytest.approx(0.01)
 
 
@@ -56,7 +56,7 @@ def test_a_state_before_the_start_brings_its_values(fmu):
 @pytest.mark.parametrize("spoil", [lambda s: b"", lambda s: s[:-3], lambda s: b"x" + s[1:], lambda s: s + b"more"])
 def test_bytes_that_are_no_state_are_refused(fmu, spoil):
     with Host(fmu).start() as host:
-        host.step(0.1)
+        assert host.step(0.1)["status"] == OK
         with pytest.raises(FMICallException):
             host.restore(spoil(host.state()), 0.1)
         assert "no state of this FMU" in host.messages[-1][2]
@@ -64,7 +64,7 @@ def test_bytes_that_are_no_state_are_refused(fmu, spoil):
 
 def test_a_damaged_worker_state_is_refused(fmu):
     with Host(fmu).start() as host:
-        host.step(0.1)
+        assert host.step(0.1)["status"] == OK
         state = bytearray(host.state())
         state[-20] ^= 255
         with pytest.raises(FMICallException):
