@@ -76,7 +76,9 @@ def run(
     elif out is not None:
         put(str(folder))
     else:
-        put_table([(name, f"{value:.9g}", "s" if name == "time" else units[name]) for name, value in final.items()], [1])
+        put_table(
+            [(name, f"{value:.9g}", "s" if name == "time" else units[name]) for name, value in final.items()], [1]
+        )
     if done.code:
         tell(done.message)
         return SolverError.exit_code

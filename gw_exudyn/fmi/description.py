@@ -143,9 +143,7 @@ def _variable3(listed: _Element, reference: int, variable: Variable) -> None:
 def _structure(root: _Element, shown: Sequence[tuple[int, Variable]], fmi: int) -> None:
     structure = _element("ModelStructure", root)
     outputs = [
-        (place, reference)
-        for place, (reference, variable) in enumerate(shown, start=1)
-        if variable.role == v.OUTPUT
+        (place, reference) for place, (reference, variable) in enumerate(shown, start=1) if variable.role == v.OUTPUT
     ]
     if fmi == 3:
         for tag in ("Output", "InitialUnknown"):

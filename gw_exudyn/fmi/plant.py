@@ -116,9 +116,12 @@ class ScenarioPlant:
     def _scenario(self, values: Sequence[float], texts: Sequence[str]) -> Scenario:
         """The scenario with every parameter that differs from its exported start."""
         changed: dict[str, Any] = {}
-        for variable, value in [*zip(self._numbers, values, strict=True), *zip(self._texts, texts, strict=True)]:
-            if value != variable.start:
-                changed[variable.name] = value if variable.kind in (TEXT, names.REAL) else int(value)
+        for variable, number in zip(self._numbers, values, strict=True):
+            if number != variable.start:
+                changed[variable.name] = number if variable.kind == names.REAL else int(number)
+        for variable, text in zip(self._texts, texts, strict=True):
+            if text != variable.start:
+                changed[variable.name] = text
         file = changed.pop(names.SCENARIO_FILE, None)
         for own in (names.COMMAND_SPEED, names.COMMAND_ACTIVE, names.TIMEOUT):
             changed.pop(own, None)

@@ -8,7 +8,7 @@ import json
 import os
 import shutil
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -81,7 +81,9 @@ class FmuSession:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         self.close()
 
     def close(self) -> None:
@@ -146,8 +148,9 @@ class FmuSession:
             raise UsageError(f"{name}: no parameter or input of the FMU has this name{hint}")
         if variable.type in _TAKES_TEXT or not isinstance(value, str):
             return value
+        readers: dict[str, Callable[[str], Any]] = {"Boolean": _boolean, "Integer": int, "Int32": int}
         try:
-            return {"Boolean": _boolean, "Integer": int, "Int32": int}.get(variable.type, float)(value)
+            return readers.get(variable.type, float)(value)
         except ValueError:
             raise UsageError(f"{name}: {value!r} is no {variable.type}; write a number in {_unit(variable)}") from None
 
@@ -172,7 +175,9 @@ class _Told:
     def __enter__(self) -> None:
         self._messages.clear()
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         if isinstance(error, Exception) and self._messages:
             raise SolverError("\n".join(self._messages)) from error
 
@@ -192,7 +197,11 @@ def run_point(session: FmuSession, point: Mapping[str, Any], *, step: float | No
     """One point of a study on a reused instance: the outputs at the end, the largest of the forces, and the status."""
     run = session.run(point, step=step)
     peaks = {f"{name}.peak": float(run.outputs[name].max()) for name in run.names if "force" in name}
-    return {**{name: float(value) for name, value in run.final.items() if np.ndim(value) == 0}, **peaks, "code": run.code}
+    return {
+        **{name: float(value) for name, value in run.final.items() if np.ndim(value) == 0},
+        **peaks,
+        "code": run.code,
+    }
 
 
 def read_inputs(file: str | os.PathLike[str]) -> NDArray[Any]:

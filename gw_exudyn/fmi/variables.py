@@ -179,9 +179,7 @@ def _section(part: str, section: Section, chosen: Mapping[str, Any]) -> Iterator
 
 def _parameter(path: str, kind: Quantity | Number | Whole | Choice, value: Any, text: str) -> Iterator[Variable]:
     if isinstance(kind, Quantity):
-        yield Variable(
-            path, REAL, FIXED, text, float(value), kind.unit, kind.usual, kind.low, kind.high, source=path
-        )
+        yield Variable(path, REAL, FIXED, text, float(value), kind.unit, kind.usual, kind.low, kind.high, source=path)
     elif isinstance(kind, Number):
         yield Variable(path, REAL, FIXED, text, float(value), "1", "1", kind.low, kind.high, source=path)
     elif isinstance(kind, Whole):

@@ -22,8 +22,9 @@ _SIGN_OF_LIFE = 0.5
 class Plant(Protocol):
     """What a worker drives."""
 
-    time: float
-    """Time reached, s."""
+    @property
+    def time(self) -> float:
+        """Time reached, s."""
 
     def start(self, numbers: bytes, texts: Sequence[str]) -> None:
         """Begin anew with these values of everything that can be set."""
@@ -57,7 +58,10 @@ def serve(channel: Channel, make: Callable[[], Plant]) -> None:
         except MemoryError:
             _refuse(channel, "there is not enough memory; use fewer segments (wire.segments)")
         except ImportError as error:
-            _refuse(channel, f"{error}; install gw-exudyn with all that it needs: pip install gw-exudyn=={gw_exudyn.__version__}")
+            _refuse(
+                channel,
+                f"{error}; install gw-exudyn with all that it needs: pip install gw-exudyn=={gw_exudyn.__version__}",
+            )
         except Exception as error:
             import traceback
 

@@ -89,7 +89,7 @@ def test_a_scenario_file_that_is_not_there(fmus):
 
 
 def failed_start(host: Host) -> str:
-    with pytest.raises(Exception, match="(?i)instantiate"):
+    with pytest.raises(Exception, match=r"(?i)instantiate"):
         host.instantiate()
     host.calls = None
     assert host.messages[-1][0] == ERROR

@@ -89,7 +89,16 @@ def build(source: str, folder: Path, *options: str) -> Path:
     if compiler is None:
         pytest.skip("there is no C compiler")
     (folder / "host.c").write_text(source)
-    command = [compiler, "-std=gnu99", "-Wall", "-Wextra", "-Werror", str(folder / "host.c"), "-o", str(folder / "host")]
+    command = [
+        compiler,
+        "-std=gnu99",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        str(folder / "host.c"),
+        "-o",
+        str(folder / "host"),
+    ]
     subprocess.run([*command, *options], check=True)
     return folder / "host"
 

@@ -5,7 +5,16 @@ from __future__ import annotations
 from pathlib import Path
 
 LIBRARIES = Path(__file__).resolve().parent / "lib"
-SOURCES = ("table.c", "request.c", "instance.c", "state.c", "fmi2.c", "fmi3.c", "platform_posix.c", "platform_windows.c")
+SOURCES = (
+    "table.c",
+    "request.c",
+    "instance.c",
+    "state.c",
+    "fmi2.c",
+    "fmi3.c",
+    "platform_posix.c",
+    "platform_windows.c",
+)
 HEADERS = ("table.h", "platform.h", "instance.h", "request.h")
 
 
