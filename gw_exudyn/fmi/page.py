@@ -71,3 +71,17 @@ does not start, {escape(launch.remedy)}.</p>
 </table>
 </body></html>
 """
+
+
+def readme_table() -> str:
+    """The table of fmu/README.md: the variables of the scenario `arc90`, in FMI 3."""
+    from gw_exudyn.fmi.export import variables_of
+    from gw_exudyn.scenario import load_scenario
+
+    return markdown(variables_of(load_scenario("arc90"), 3))
+
+
+if __name__ == "__main__":
+    import sys
+
+    sys.stdout.write(readme_table() + "\n")

@@ -51,6 +51,7 @@ class ScenarioPlant:
         self._built_of: tuple[Any, ...] | None = None
         self._simulation: Simulation | None = None
         self._commanded = False
+        self._sampled: Mapping[str, Any] | None = None
 
     @property
     def simulation(self) -> Simulation:
@@ -69,7 +70,7 @@ class ScenarioPlant:
 
         Raises ScenarioError with everything that is wrong.
         """
-        values = array("d", numbers)
+        values, self._sampled = array("d", numbers), None
         key = (*(v for i, v in enumerate(values) if i not in self._not_structure), *texts)
         if self._simulation is None or key != self._built_of:
             self._simulation, self._built_of = None, None
@@ -88,7 +89,7 @@ class ScenarioPlant:
         step = simulation.scenario.solver.step
         while simulation.time < target - 1e-9 and not simulation.failed:
             ahead = round((math.floor(simulation.time / step + 1e-6) + _STEPS_AT_ONCE) * step, 12)
-            simulation.step(min(target, ahead) - simulation.time, speed=command)
+            self._sampled = simulation.step(min(target, ahead) - simulation.time, speed=command)
             alive()
         if not simulation.failed:
             return DONE
@@ -97,7 +98,7 @@ class ScenarioPlant:
     def outputs(self) -> tuple[bytes, Sequence[str]]:
         """The outputs at the time reached, in the table's order."""
         simulation = self.simulation
-        outputs, report = simulation.outputs, simulation.status
+        outputs, report = self._sampled or simulation.outputs, simulation.status
         values = array("d")
         for reader in self._readers:
             reader(values, outputs, simulation)
@@ -110,6 +111,7 @@ class ScenarioPlant:
 
     def set_state(self, state: bytes) -> None:
         """Go on from a state of a run with the same parameters. Raises UsageError."""
+        self._sampled = None
         self.simulation.set_state(state[1:])
         self._commanded = bool(state[0])
 
