@@ -38,10 +38,13 @@ def test_a_call_out_of_order_is_told_with_what_is_allowed(fmu):
             host.calls.exitInitializationMode()
 
 
-@pytest.mark.parametrize("dt", [0.0, -0.1, float("nan"), float("inf")])
-def test_a_step_that_is_not_positive_is_an_error(fmus, dt):
+def test_a_step_that_is_not_positive_is_an_error(fmus):
     with Host(fmus[2]).start() as host:
-        assert host.step(dt)["status"] == ERROR
+        for dt in (0.0, -0.1, float("nan"), float("inf")):
+            assert host.step(dt)["status"] == ERROR
+            host.calls.reset()
+            host.start()
+        assert host.step(0.1)["status"] == OK
 
 
 def test_a_step_from_elsewhere_and_beyond_the_stop_time_are_errors(fmu):

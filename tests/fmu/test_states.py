@@ -53,13 +53,15 @@ def test_a_state_before_the_start_brings_its_values(fmu):
         assert host.get("contact.friction_coefficient") == 0.15
 
 
-@pytest.mark.parametrize("spoil", [lambda s: b"", lambda s: s[:-3], lambda s: b"x" + s[1:], lambda s: s + b"more"])
-def test_bytes_that_are_no_state_are_refused(fmu, spoil):
+def test_bytes_that_are_no_state_are_refused(fmu):
     with Host(fmu).start() as host:
         assert host.step(0.1)["status"] == OK
-        with pytest.raises(FMICallException):
-            host.restore(spoil(host.state()), 0.1)
-        assert "no state of this FMU" in host.messages[-1][2]
+        state = host.state()
+        for spoiled in (b"", state[:-3], b"x" + state[1:], state + b"more"):
+            with pytest.raises(FMICallException):
+                host.restore(spoiled, 0.1)
+            assert "no state of this FMU" in host.messages.pop()[2]
+        assert host.step(0.1)["status"] == OK  # nothing has happened to the run
 
 
 def test_a_damaged_worker_state_is_refused(fmu):
