@@ -62,8 +62,8 @@ class Model:
             "wire.segments": self.wire.segments,
             "wire.shortest_segment": float(self.wire.lengths.min()),
             "wire.longest_segment": float(self.wire.lengths.max()),
-            "wire.bending_stiffness_least": min(min(p.value, p.value_end) for p in scenario.wire.bending_stiffness),
-            "wire.bending_stiffness_largest": max(max(p.value, p.value_end) for p in scenario.wire.bending_stiffness),
+            "wire.bending_stiffness_least": min(min(p.value, p.value_end) for p in scenario.wire.effective_stiffness),
+            "wire.bending_stiffness_largest": max(max(p.value, p.value_end) for p in scenario.wire.effective_stiffness),
             "wire.imperfection": value_or(scenario.wire.imperfection, DEFAULT_IMPERFECTION),
             "wire.mass": float(self.wire.mass.sum()),
             "vessel.walls": int(np.count_nonzero(~self.walls.tube)),
@@ -101,7 +101,7 @@ def build(scenario: Scenario) -> Model:
         value_or(scenario.catheter.friction_coefficient, contact.friction_coefficient),
         seam_reach=6 * wire.radius,
     )
-    warnings = (*law_warnings(scenario, around), *_too_coarse(scenario, wire))
+    warnings = (*law_warnings(scenario, around), *_too_coarse(scenario, wire), *_shaft_alone(scenario))
     return Model(scenario, frame, wire, walls, law, drive, outline, tube, around, warnings)
 
 
@@ -112,4 +112,13 @@ def _too_coarse(scenario: Scenario, wire: Wire) -> list[str]:
     return [
         f"wire.tip_shape: {shape * 1e3:.6g} mm is shorter than the last segment, {last * 1e3:.6g} mm, and is lost in "
         "part or whole; take more wire.segments, or a wire.grading above 1"
+    ]
+
+
+def _shaft_alone(scenario: Scenario) -> list[str]:
+    if not scenario.wire.shaft_alone:
+        return []
+    return [
+        f"wire.model: {scenario.wire.model} is the shaft alone, and no tip of this wire is known: the distal part of "
+        "the real wire is far softer; give it one by wire.floppy_tip"
     ]

@@ -64,7 +64,7 @@ def build_wire(spec: WireSpec) -> Wire:
     nodes = np.concatenate([[0.0], np.cumsum(lengths[::-1])])[::-1].copy()
     nodes[0] = spec.length  # without the sum's rounding: the clamp's stretch ends where stiffness and tip shape may
     far, near = joint_regions(nodes)
-    stiffness = 1 / compliance(spec.bending_stiffness, near, far)
+    stiffness = 1 / compliance(spec.effective_stiffness, near, far)
     radius = spec.diameter / 2
     mass = spec.density * math.pi * radius**2 * lengths
     return Wire(
