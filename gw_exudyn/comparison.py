@@ -97,7 +97,7 @@ def compare(first: Course, second: Course) -> dict[str, Norm]:
 def common_time(first: Course, second: Course) -> Floats:
     """Instants, s, of the first that lie in the time of both. Raises ComparisonError where there is none."""
     begin, end = max(first.time[0], second.time[0]), min(first.time[-1], second.time[-1])
-    within = first.time[(first.time >= begin - 1e-9) & (first.time <= end + 1e-9)]
+    within: Floats = first.time[(first.time >= begin - 1e-9) & (first.time <= end + 1e-9)]
     if not len(within):
         raise ComparisonError(
             f"{first.name} ({first.time[0]:g} to {first.time[-1]:g} s) and {second.name} "
