@@ -21,6 +21,7 @@ MAY_IMPORT = {
     "metrics": ABOVE_RESULT,
     "comparison": ABOVE_RESULT,
     "plots": ABOVE_RESULT | {"metrics", "storage", "comparison"},
+    "report": ABOVE_RESULT | {"metrics", "comparison", "plots", "storage"},
     "storage": ABOVE_RESULT | {"metrics", "plots"},
     "sampling": ABOVE_RESULT | {"model", "engine"},
     "trust": ABOVE_RESULT | {"model", "engine"},
