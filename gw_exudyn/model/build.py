@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gw_exudyn.model.checks import check
+from gw_exudyn.model.checks import check, travel_wanted
 from gw_exudyn.model.contact import ContactLaw
-from gw_exudyn.model.drive import Drive, build_drive
+from gw_exudyn.model.drive import AnyDrive, Drive, build_drive
 from gw_exudyn.model.frame import Frame
 from gw_exudyn.model.law import SINKING, Surroundings, contact_law, law_warnings, surroundings, value_or
 from gw_exudyn.model.outline import Outline, build_outline
@@ -35,11 +35,16 @@ class Model:
     wire: Wire
     walls: Walls
     law: ContactLaw
-    drive: Drive
+    drive: AnyDrive
     outline: Outline
     tube: Tube
     around: Surroundings
     warnings: tuple[str, ...]
+
+    @property
+    def travel_range(self) -> tuple[float, float]:
+        """Travel, m, between which the proximal end stays in the catheter, and the catheter's walls reach."""
+        return self.wire.length - self.tube.length, self.wire.length
 
     def vessel_outline(self) -> list[Floats]:
         """The vessel's walls for drawing, in the scenario's plane: (k, 2) polylines, m."""
@@ -75,7 +80,8 @@ class Model:
             "contact.tangential_stiffness": self.law.tangential_stiffness,
             "contact.onset": self.law.toe,
             "drive.duration": scenario.drive.duration,
-            "drive.furthest": self.drive.extremes()[1],
+            "drive.kind": scenario.drive.kind,
+            "drive.furthest": travel_wanted(scenario, self.drive),
             "solver.steps": int(np.ceil(scenario.drive.duration / scenario.solver.step)),
             "warnings": list(self.warnings),
         }
@@ -87,7 +93,7 @@ def build(scenario: Scenario) -> Model:
     wire, drive = build_wire(scenario.wire), build_drive(scenario.drive)
     plane = build_outline(scenario.vessel)
     outline = Outline(frame.points_in(plane.points), plane.open_edges)
-    pulled_back = -drive.extremes()[0]
+    pulled_back = -drive.extremes()[0] if isinstance(drive, Drive) else 0.0
     tube = Tube(scenario.catheter.bore, 2 * wire.length + pulled_back)
     check(scenario, outline, tube, drive)
     around = surroundings(outline)
