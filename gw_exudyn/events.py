@@ -78,9 +78,7 @@ class Watch:
         return self._report(Status.FORCE_LIMIT, f"limit {limit:.4g} N")
 
     def _stall(self) -> StatusReport | None:
-        length, travel = self._spec.tip_stall, self._stepper.instant.travel
-        if length is None:
-            return None
+        length, travel = self._stepper.model.stall_travel, self._stepper.instant.travel
         self.anchor = moved_anchor(self.anchor, length, travel, self._tip())
         if travel - self.anchor.travel < length:
             return None

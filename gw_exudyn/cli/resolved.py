@@ -42,15 +42,13 @@ def _section(section: Section, above: str) -> Iterator[tuple[str, str]]:
             yield from _listed(path, [_text(point, Row(("x", "y"), (COORDINATE, COORDINATE))) for point in value])
         elif isinstance(value, Section):
             yield from _section(value, f"{path}.")
-        elif value is not None or (isinstance(kind, Quantity) and kind.word):
+        elif value is not None or (isinstance(kind, Quantity) and kind.word_for(value)):
             yield path, _text(value, kind)
 
 
 def _text(value: Any, kind: Quantity | Row | None) -> str:
     if isinstance(kind, Quantity):
-        if value is None:
-            return kind.word
-        return format_quantity(value, kind.usual)
+        return kind.word_for(value) or format_quantity(value, kind.usual)
     if isinstance(value, list | tuple):
         kinds: Sequence[Any] = kind.kinds if isinstance(kind, Row) else [None] * len(value)
         return f"[{', '.join(_text(item, one) for item, one in zip(value, kinds, strict=True))}]"

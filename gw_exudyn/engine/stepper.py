@@ -21,7 +21,7 @@ from gw_exudyn.engine.settings import simulation_settings
 from gw_exudyn.engine.state import State
 from gw_exudyn.errors import SolverError
 from gw_exudyn.model import Model
-from gw_exudyn.model.contact import NOWHERE, Contact
+from gw_exudyn.model.contact import NOWHERE, Contact, Deepest
 from gw_exudyn.model.drive import AnyDrive, Force
 from gw_exudyn.model.energy import Energies, Snapshot, advanced, snapshot, wall_start
 from gw_exudyn.model.hub import HubEnergies, HubInstant, hub_advanced
@@ -31,6 +31,9 @@ Floats = NDArray[np.float64]
 
 _SAME_TIME = 1e-9
 """Times closer than this, s, are one."""
+
+_SLOWER = 5
+"""How often a step is taken again with a slower leg; the last time the hub stands still."""
 
 _LEAST_RELEASE = 1e-11
 """Releases of less, J, are not kept: even a thousand in a row are nothing."""
@@ -103,8 +106,9 @@ class Stepper:
             following = self.next_grid_time()
             if following > target + _SAME_TIME:
                 self._grid = (self.state(), len(self.releases), dict(self.peaks))
+                self._find_leg(following)
                 return self._solve(target)
-            if not self._solve(following):
+            if not self._nominal_step(following):
                 return False
         return True
 
@@ -133,7 +137,6 @@ class Stepper:
 
     def _solve(self, end: float) -> bool:
         """Exudyn's steps from the time reached to `end`."""
-        self._decide()
         travel = (end - self._time) * self.system.hub.fastest(self.drive, self._hub, self._time, end)
         pieces = max(1, math.ceil(travel / (self.contact.reach * PIECE) - 1e-9))
         for piece in np.linspace(self._time, end, pieces + 1)[1:]:
@@ -148,11 +151,50 @@ class Stepper:
                 return False
         return True
 
-    def _decide(self) -> None:
-        """A controlled drive chooses its next leg, from the state alone: what is run from here twice, is run alike."""
-        if isinstance(self.drive, TipSpeed):
-            tip, step = self.tip(), self.model.scenario.solver.step
-            self.drive = self.drive.decided(self._time, tip, self._instant.push, step)
+    def _nominal_step(self, end: float) -> bool:
+        """To the next grid time. A controlled drive chooses its leg, from the state alone, so that what is run from
+        here twice is run alike; where the push force would pass its limit, the step is taken again with a slower leg.
+        """
+        if not isinstance(self.drive, TipSpeed):
+            return self._solve(end)
+        before = self._instant.push
+        self.drive = self._decided(self.drive)
+        mark = self._mark()
+        solved = self._solve(end)
+        for attempt in range(_SLOWER):
+            if not (solved and self.drive.is_too_fast(self._instant.push)):
+                break
+            slower = self.drive.slowed(before, self._instant.push, last=attempt == _SLOWER - 1)
+            self._back_to(mark)
+            self.drive = slower
+            solved = self._solve(end)
+        return solved
+
+    def _decided(self, drive: TipSpeed) -> TipSpeed:
+        return drive.decided(self._time, self.tip(), self._instant.push, self.model.scenario.solver.step)
+
+    def _find_leg(self, end: float) -> None:
+        """The leg of a controlled drive up to the next grid time, for a stop on the way; nothing else has moved."""
+        if not isinstance(self.drive, TipSpeed):
+            return
+        if math.isinf(self.drive.force_limit):
+            self.drive = self._decided(self.drive)
+            return
+        mark = self._mark()
+        self._nominal_step(end)
+        drive = self.drive
+        self._back_to(mark)
+        self.drive = drive
+
+    def _mark(self) -> tuple[State, int, Peaks, Deepest]:
+        return self.state(), len(self.releases), dict(self.peaks), self.deepest
+
+    def _back_to(self, mark: tuple[State, int, Peaks, Deepest]) -> None:
+        """As if nothing had been run since `mark`; only the counts of work go on."""
+        state, releases, peaks, self.deepest = mark
+        self.peaks = dict(peaks)
+        del self.releases[releases:]
+        self.restore(state)
 
     def tip(self) -> tuple[float, float]:
         """Place of the tip, m."""

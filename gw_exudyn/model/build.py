@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +22,10 @@ if TYPE_CHECKING:
     from gw_exudyn.scenario import Scenario
 
 Floats = NDArray[np.float64]
+
+
+_STALL_LUMENS, _LEAST_STALL = 1.25, 5e-3
+"""Default travel in which a tip has stalled: in lumens at the catheter's exit, and at least so many m."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +50,16 @@ class Model:
     def travel_range(self) -> tuple[float, float]:
         """Travel, m, between which the proximal end stays in the catheter, and the catheter's walls reach."""
         return self.wire.length - self.tube.length, self.wire.length
+
+    @property
+    def stall_travel(self) -> float:
+        """Travel, m, of the proximal end in which a tip that stays where it is has stalled; infinite for never.
+
+        Round the corners and in the bends of benchmarks/cases.py a tip may stick for 0.6 lumens of travel before it
+        goes on; one that sticks for more than 1.8 does not come free any more.
+        """
+        chosen = max(_LEAST_STALL, _STALL_LUMENS * self.around.width)
+        return value_or(self.scenario.stop.tip_stall, chosen)
 
     def vessel_outline(self) -> list[Floats]:
         """The vessel's walls for drawing, in the scenario's plane: (k, 2) polylines, m."""
@@ -81,6 +96,7 @@ class Model:
             "contact.onset": self.law.toe,
             "drive.duration": scenario.drive.duration,
             "drive.kind": scenario.drive.kind,
+            "stop.tip_stall": None if math.isinf(self.stall_travel) else self.stall_travel,
             "drive.furthest": travel_wanted(scenario, self.drive),
             "solver.steps": int(np.ceil(scenario.drive.duration / scenario.solver.step)),
             "warnings": list(self.warnings),

@@ -20,6 +20,9 @@ _APPROACH = 0.5
 _FORGET = 0.5
 """The stiffness against pushing that was found may fall to this share in a nominal step; it rises at once."""
 
+_LESS = 0.9
+"""A leg that is slowed down aims at this share of the push force that is left to the limit."""
+
 _SAME_TIME = 1e-9
 
 
@@ -94,6 +97,18 @@ class TipSpeed:
         most = min(self.max_speed, self._speed_to_limit(push, stiffness, step))
         speed = min(max(speed, 0.0), most)
         return replace(self, leg=Leg(time, self.position_at(time), speed, wanted, tip[0], tip[1], push, stiffness))
+
+    def is_too_fast(self, push: float) -> bool:
+        """A push force, N, at the leg's end is above the limit, and a slower leg may help."""
+        return push > self.force_limit and self.leg.speed > 0
+
+    def slowed(self, before: float, push: float, *, last: bool) -> TipSpeed:
+        """The drive with a slower leg, where this one takes the push force from `before` to `push`, N, above the limit.
+
+        last : stand still.
+        """
+        share = 0.0 if last else max(0.0, _LESS * (self.force_limit - before) / (push - before))
+        return replace(self, leg=replace(self.leg, speed=self.leg.speed * share))
 
     def _stiffness(self, push: float, passed: float) -> float:
         travel = self.leg.speed * passed

@@ -109,8 +109,8 @@ class Quantity(Kind):
     """A physical quantity: a bare SI number or text with a unit.
 
     unit : its SI unit. low, high : the plausible, in SI, both allowed. usual : the unit in which limits are told.
-    also : other SI units whose dimension is taken. auto, off : that word stands for None. optional : so does nothing
-        at all.
+    also : other SI units whose dimension is taken. auto : the word `auto` stands for None. optional : so does nothing
+        at all. off : the word `off` stands for infinite.
     """
 
     unit: str
@@ -123,16 +123,20 @@ class Quantity(Kind):
     off: bool = False
 
     @property
-    def word(self) -> str:
-        """The word that stands for None; empty where there is none."""
-        return "auto" if self.auto else "off" if self.off else ""
+    def words(self) -> dict[str, float | None]:
+        """The words that may stand for a value, and the value of each."""
+        return ({"auto": None} if self.auto else {}) | ({"off": math.inf} if self.off else {})
+
+    def word_for(self, value: float | None) -> str:
+        """The word that stands for a value; empty where none does."""
+        return next((word for word, meaning in self.words.items() if meaning == value), "")
 
     def read(self, value: Any) -> float | None:
         """The value in SI."""
         if value is None and (self.optional or self.auto):
             return None
-        if self.word and isinstance(value, str) and value == self.word:
-            return None
+        if isinstance(value, str) and value in self.words:
+            return self.words[value]
         if isinstance(value, str):
             number = self._from_text(value)
         elif is_number(value):
@@ -147,13 +151,12 @@ class Quantity(Kind):
         try:
             return parse_quantity(text, self.unit, *self.also)
         except UnitError as error:
-            word = f"; or write {self.word}" if self.word else ""
+            word = f"; or write {' or '.join(self.words)}" if self.words else ""
             raise wrong(f"{error}{word}") from None
 
     def _example(self) -> str:
-        return (
-            f"{self.word}, or " if self.word else ""
-        ) + f"a number in SI ({self.unit}) or text such as '2.5 {self.usual}'"
+        words = "".join(f"{word}, or " for word in self.words)
+        return f"{words}a number in SI ({self.unit}) or text such as '2.5 {self.usual}'"
 
     def _implausible(self, value: Any, number: float) -> str:
         limits = f"{self.limit(self.low)} to {self.limit(self.high)}"
@@ -176,8 +179,7 @@ class Quantity(Kind):
             {"type": "number", "minimum": self.low, "maximum": self.high, "description": f"in SI: {self.unit}"},
             {"type": "string", "pattern": r"^\s*[+-]?[0-9.]", "description": f"number, space, unit: {units}"},
         ]
-        if self.word:
-            options.append({"const": self.word})
+        options += [{"const": word} for word in self.words]
         if self.optional or self.auto:
             options.append({"type": "null"})
         return {"anyOf": options}
@@ -393,9 +395,9 @@ class Section(BaseModel):
         plain: dict[str, Any] = {}
         for name, info in type(self).model_fields.items():
             value = getattr(self, name)
-            word = next((kind.word for kind in info.metadata if isinstance(kind, Quantity)), "")
+            word = next((kind.word_for(value) for kind in info.metadata if isinstance(kind, Quantity)), "")
             if value is not None or word:
-                plain[info.alias or name] = word if value is None else to_plain(value)
+                plain[info.alias or name] = word or to_plain(value)
         return plain
 
 

@@ -25,15 +25,16 @@ class StopSpec(Section):
     """Events that end a run; they are looked for at the ends of nominal steps.
 
     tip_stall : m of travel of the proximal end in which a tip that moves less than a tenth of it has stalled; None is
-        off. push_force : N, None is off. target : None or a point. at_target : whether reaching it ends the run.
+        chosen by the model, infinite is off. push_force : N, None is off. target : None or a point. at_target : whether
+        reaching it ends the run.
     """
 
     what: ClassVar[str] = "what ends the run"
 
     tip_stall: Annotated[float | None, STALL_TRAVEL] = Field(
-        default=10e-3,
+        default=None,
         description="the run ends where the tip moves less than a tenth of this while the wire is pushed in by this; "
-        "off goes on",
+        "auto is 1.25 lumens at the catheter's exit, 5 mm at least; off goes on",
     )
     push_force: Annotated[float | None, FORCE_LIMIT] = Field(
         default=None, description="push force at which the run ends"
