@@ -59,8 +59,22 @@ def test_a_force_that_suffices_takes_the_wire_round_the_corner_and_the_energy_cl
     spent = outputs["insertion_work"] + outputs["hub_kinetic_energy"] + outputs["hub_damping_loss"]
     assert outputs["drive_work"] == pytest.approx(spent + outputs["hub_numerical_loss"], rel=1e-6)
     assert outputs["hub_kinetic_energy"] == pytest.approx(0.5 * 0.01 * outputs["drive_speed"] ** 2)
-    # A step that the hub outruns is cut, and few are: without the check on its speed the snap takes one step.
-    assert simulation.counters["newton_iterations"] < 16 * simulation.counters["solver_steps"]
+    # With the exact tangent a step takes 3.3 iterations on average, snap included.
+    assert simulation.counters["newton_iterations"] < 5 * simulation.counters["solver_steps"]
+
+
+def test_a_free_hub_never_outruns_the_reach_of_contact() -> None:
+    """Steps of 1 s, in which the hub goes 6 mm and contact looks ahead 0.9 mm, are cut; the way is the same."""
+    coarse = Simulation(scenario(drive=ROUND_THE_CORNER, solver={"step": 1.0}))
+    travels = [0.0]
+    noted = coarse._stepper._note_peaks
+    coarse._stepper._note_peaks = lambda time: (travels.append(coarse._stepper.hub.travel), noted(time))
+    assert coarse.advance(7.0), coarse.status.sentence()
+    assert np.abs(np.diff(travels)).max() <= coarse._stepper.contact.reach / 3
+    fine = Simulation(scenario(drive=ROUND_THE_CORNER))
+    fine.advance(7.0)
+    for name in ("insertion_depth", "tip_x", "tip_y"):
+        assert coarse.outputs[name] == pytest.approx(fine.outputs[name], abs=0.2e-3), name
 
 
 def test_the_hub_stops_at_the_end_of_its_travel() -> None:
