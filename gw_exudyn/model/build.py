@@ -55,8 +55,8 @@ class Model:
     def stall_travel(self) -> float:
         """Travel, m, of the proximal end in which a tip that stays where it is has stalled; infinite for never.
 
-        Round the corners and in the bends of benchmarks/cases.py a tip may stick for 0.6 lumens of travel before it
-        goes on; one that sticks for more than 1.8 does not come free any more.
+        In the vessels of benchmarks/cases.py (100 segments, friction 0.2 and 0.4) a tip sticks for up to 0.6 lumens of
+        travel before it goes on; those that stuck for longer never came free.
         """
         chosen = max(_LEAST_STALL, _STALL_LUMENS * self.around.width)
         return value_or(self.scenario.stop.tip_stall, chosen)
