@@ -71,9 +71,19 @@ def summary_rows(scenario: Scenario, described: dict[str, Any]) -> list[tuple[st
         ("catheter", f"exit at ({place}) mm, bore {given('catheter.bore', 'mm')}, {play} wider than the wire"),
         ("friction", f"{scenario.contact.friction_coefficient:g}"),
         ("wall stiffness", f"{given('contact.wall_stiffness', 'N/m')}, {stiffness}"),
-        ("drive", f"{given('drive.furthest', 'mm')} in, {given('drive.duration', 's')} in all"),
+        ("drive", f"{_drive(scenario, described)}, {given('drive.duration', 's')} in all"),
         ("solver steps", f"about {described['solver.steps']} of {format_quantity(scenario.solver.step, 'ms')}"),
     ]
+
+
+def _drive(scenario: Scenario, described: dict[str, Any]) -> str:
+    from gw_exudyn.scenario.units import format_quantity
+
+    drive = scenario.drive
+    if drive.kind == "force":
+        return f"force of up to {format_quantity(max(drive.force, key=abs), 'mN')} on the hub"
+    furthest = format_quantity(float(f"{described['drive.furthest']:.4g}"), "mm")
+    return f"{furthest} in" if drive.kind == "speed" else f"{furthest} of the tip's path, by the hub's speed"
 
 
 def _corners(described: dict[str, Any]) -> str:

@@ -31,8 +31,14 @@ _TUNNELLED = 0.5
 _JUMP, _FOLLOWED = 1.5, 2.0
 """A step may move a segment by so many radii, and by so many times the drive's travel, together."""
 
+_SURPRISE = 0.5
+"""By how much the way that a hub goes at its speed in a step may change over the step, in radii."""
+
 _HELD_ITERATIONS = 1
 """Iterations in which the tangent keeps the stiffness of the contacts at the step's start."""
+
+PIECE = 1 / 3
+"""Share of the contact's reach that the drive may travel in one step: segments may move by some more."""
 
 _ACCEPT, _REFUSE = [0.0, -1.0], [1e9, -1.0]
 
@@ -188,7 +194,8 @@ class Newton:
         about.
         """
         motion, wire = self._contact.motion, self._contact.wire
-        on_proximal_end = -np.asarray(self._data.GetAECoordinates())[HUB_COORDINATES:].reshape(-1, 2)
+        multipliers = np.asarray(self._data.GetAECoordinates())[self._system.hub.constraints :]
+        on_proximal_end = -multipliers.reshape(-1, 2)
         along = motion.c * on_proximal_end[:, 0] + motion.s * on_proximal_end[:, 1]
         along[:-1] += motion.c[:-1] * on_proximal_end[1:, 0] + motion.s[:-1] * on_proximal_end[1:, 1]
         if self._last_move > _NEAR * wire.radius:
@@ -197,9 +204,21 @@ class Newton:
 
     def _after_newton(self, _mbs: Any, _time: float) -> list[float]:
         """Refuse what converged to the wrong thing; the step is then cut."""
-        wrong = self._jumped() or self._tunnelled() or self._unstable()
+        wrong = self._ran_away() or self._jumped() or self._tunnelled() or self._unstable()
         self.refused += wrong
         return _REFUSE if wrong else _ACCEPT
+
+    def _ran_away(self) -> bool:
+        """A hub that moves freely went further than contact looks ahead, out of its range, or much further or less far
+        than its speed foretold: the step is too long for it. Its travel is known from here on."""
+        if not self._system.hub.moves_freely:
+            return False
+        there, foretold = float(self._data.GetODE2Coordinates()[0]), self._travel
+        self._travel = there - float(self._data.GetODE2Coordinates(exudyn().ConfigurationType.StartOfStep)[0])
+        surprise = abs(float(self._data.GetODE2Coordinates_t()[0]) * self._step - foretold)
+        (back, far), contact = self._system.range, self._contact
+        far_off = surprise > _SURPRISE * contact.wire.radius or abs(self._travel) > contact.reach * PIECE
+        return far_off or not back < there < far
 
     def _jumped(self) -> bool:
         """A node moved much further than the drive: the step skipped a snap-through, whose branch only short steps

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gw_exudyn.model.checks import check
+from gw_exudyn.model.checks import check, travel_wanted
 from gw_exudyn.model.contact import ContactLaw
-from gw_exudyn.model.drive import Drive, build_drive
+from gw_exudyn.model.drive import AnyDrive, Drive, build_drive
 from gw_exudyn.model.frame import Frame
 from gw_exudyn.model.law import SINKING, Surroundings, contact_law, law_warnings, surroundings, value_or
 from gw_exudyn.model.outline import Outline, build_outline
@@ -21,6 +22,10 @@ if TYPE_CHECKING:
     from gw_exudyn.scenario import Scenario
 
 Floats = NDArray[np.float64]
+
+
+_STALL_LUMENS, _LEAST_STALL = 1.25, 5e-3
+"""Default travel in which a tip has stalled: in lumens at the catheter's exit, and at least so many m."""
 
 
 @dataclass(frozen=True)
@@ -35,11 +40,26 @@ class Model:
     wire: Wire
     walls: Walls
     law: ContactLaw
-    drive: Drive
+    drive: AnyDrive
     outline: Outline
     tube: Tube
     around: Surroundings
     warnings: tuple[str, ...]
+
+    @property
+    def travel_range(self) -> tuple[float, float]:
+        """Travel, m, between which the proximal end stays in the catheter, and the catheter's walls reach."""
+        return self.wire.length - self.tube.length, self.wire.length
+
+    @property
+    def stall_travel(self) -> float:
+        """Travel, m, of the proximal end in which a tip that stays where it is has stalled; infinite for never.
+
+        In the vessels of benchmarks/cases.py (100 segments, friction 0.2 and 0.4) a tip sticks for up to 0.6 lumens of
+        travel before it goes on; those that stuck for longer never came free.
+        """
+        chosen = max(_LEAST_STALL, _STALL_LUMENS * self.around.width)
+        return value_or(self.scenario.stop.tip_stall, chosen)
 
     def vessel_outline(self) -> list[Floats]:
         """The vessel's walls for drawing, in the scenario's plane: (k, 2) polylines, m."""
@@ -75,7 +95,9 @@ class Model:
             "contact.tangential_stiffness": self.law.tangential_stiffness,
             "contact.onset": self.law.toe,
             "drive.duration": scenario.drive.duration,
-            "drive.furthest": self.drive.extremes()[1],
+            "drive.kind": scenario.drive.kind,
+            "stop.tip_stall": None if math.isinf(self.stall_travel) else self.stall_travel,
+            "drive.furthest": travel_wanted(scenario, self.drive),
             "solver.steps": int(np.ceil(scenario.drive.duration / scenario.solver.step)),
             "warnings": list(self.warnings),
         }
@@ -87,7 +109,7 @@ def build(scenario: Scenario) -> Model:
     wire, drive = build_wire(scenario.wire), build_drive(scenario.drive)
     plane = build_outline(scenario.vessel)
     outline = Outline(frame.points_in(plane.points), plane.open_edges)
-    pulled_back = -drive.extremes()[0]
+    pulled_back = -drive.extremes()[0] if isinstance(drive, Drive) else 0.0
     tube = Tube(scenario.catheter.bore, 2 * wire.length + pulled_back)
     check(scenario, outline, tube, drive)
     around = surroundings(outline)

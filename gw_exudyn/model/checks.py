@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gw_exudyn.errors import Problem, ScenarioError
-from gw_exudyn.model.drive import Drive
+from gw_exudyn.model.drive import AnyDrive, Drive, Force
 from gw_exudyn.model.law import JUST_AHEAD
 from gw_exudyn.model.outline import Outline
 from gw_exudyn.model.walls import Tube, vessel_polylines
@@ -22,7 +22,7 @@ _STEP = 1e-6
 """By how much, m, a wall may stand inside the bore at the exit: far less than the wire notices."""
 
 
-def check(scenario: Scenario, outline: Outline, tube: Tube, drive: Drive) -> None:
+def check(scenario: Scenario, outline: Outline, tube: Tube, drive: AnyDrive) -> None:
     """Raise ScenarioError with everything that keeps this wire from starting in this vessel.
 
     outline and tube in the catheter's frame.
@@ -73,16 +73,24 @@ def _exit(scenario: Scenario, outline: Outline, tube: Tube) -> list[Problem]:
     return [scenario.problem("catheter.bore", text)]
 
 
-def _travel(scenario: Scenario, drive: Drive) -> list[Problem]:
+def _travel(scenario: Scenario, drive: AnyDrive) -> list[Problem]:
     """The proximal end stays behind the exit: the drive holds it on the catheter's axis."""
-    furthest = drive.extremes()[1]
-    if furthest < scenario.wire.length:
+    furthest = travel_wanted(scenario, drive)
+    if furthest is None or furthest < scenario.wire.length:
         return []
     text = (
         f"pushes {_mm(furthest)} of a wire of {_mm(scenario.wire.length)}: its end would leave the catheter; "
         "push less far, or take a longer wire (wire.length)"
     )
     return [scenario.problem("drive", text)]
+
+
+def travel_wanted(scenario: Scenario, drive: AnyDrive) -> float | None:
+    """Furthest travel, m, of the proximal end, or of the tip where that is what is driven; None for a force, of which
+    the run will tell."""
+    if isinstance(drive, Force):
+        return None
+    return drive.extremes()[1] if isinstance(drive, Drive) else drive.course.area_to(scenario.drive.duration)
 
 
 def contains(polygon: Floats, point: Floats) -> bool:

@@ -12,9 +12,11 @@ if TYPE_CHECKING:
     from gw_exudyn.scenario.catalogue import CatalogueWire, catalogue_names, load_catalogue
     from gw_exudyn.scenario.drive import SpeedDrive
     from gw_exudyn.scenario.loading import load_scenario, scenario_from_dict
+    from gw_exudyn.scenario.other_drives import ForceDrive, TipSpeedDrive
     from gw_exudyn.scenario.schema import CatheterSpec, ContactSpec, OutputSpec, Scenario, SolverSpec, json_schema
     from gw_exudyn.scenario.shipped import list_shipped, resolve, shipped_folder
     from gw_exudyn.scenario.stiffness import StiffnessPiece
+    from gw_exudyn.scenario.stop import StopSpec, TargetSpec
     from gw_exudyn.scenario.units import format_quantity, parse_quantity, parse_unit
     from gw_exudyn.scenario.vessel import ArcVessel, PolygonVessel, StraightVessel
     from gw_exudyn.scenario.wire import TipShape, WireSpec
@@ -24,13 +26,17 @@ _HOME = {
     "CatalogueWire": "catalogue",
     "CatheterSpec": "schema",
     "ContactSpec": "schema",
+    "ForceDrive": "other_drives",
     "OutputSpec": "schema",
     "PolygonVessel": "vessel",
     "Scenario": "schema",
     "SolverSpec": "schema",
     "SpeedDrive": "drive",
     "StiffnessPiece": "stiffness",
+    "StopSpec": "stop",
     "StraightVessel": "vessel",
+    "TargetSpec": "stop",
+    "TipSpeedDrive": "other_drives",
     "TipShape": "wire",
     "WireSpec": "wire",
     "catalogue_names": "catalogue",
@@ -51,14 +57,18 @@ __all__ = [
     "CatalogueWire",
     "CatheterSpec",
     "ContactSpec",
+    "ForceDrive",
     "OutputSpec",
     "PolygonVessel",
     "Scenario",
     "SolverSpec",
     "SpeedDrive",
     "StiffnessPiece",
+    "StopSpec",
     "StraightVessel",
+    "TargetSpec",
     "TipShape",
+    "TipSpeedDrive",
     "WireSpec",
     "catalogue_names",
     "format_quantity",

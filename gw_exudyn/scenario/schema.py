@@ -30,6 +30,7 @@ from gw_exudyn.scenario.kinds import (
     WALL_STIFFNESS,
 )
 from gw_exudyn.scenario.problems import place_of
+from gw_exudyn.scenario.stop import StopSpec
 from gw_exudyn.scenario.vessel import Vessel
 from gw_exudyn.scenario.wire import WireSpec
 from gw_exudyn.scenario.words import shown
@@ -133,6 +134,7 @@ class Scenario(Section):
     )
     contact: ContactSpec = Field(default=ContactSpec(), description="contact and friction")
     drive: Drive = Field(description="what moves the wire", examples=["{kind: speed, speed: 2 mm/s, distance: 60 mm}"])
+    stop: StopSpec = Field(default=StopSpec(), description="what ends the run before the drive does")
     solver: SolverSpec = Field(default=SolverSpec(), description="steps of the solver")
     output: OutputSpec = Field(default=OutputSpec(), validate_default=True, description="what is kept")
 
@@ -146,7 +148,7 @@ class Scenario(Section):
             raise wrong(f"{shown(name)} cannot name a folder; {allowed}")
         return name
 
-    @field_validator("contact", "solver", "output", mode="before")
+    @field_validator("contact", "stop", "solver", "output", mode="before")
     @classmethod
     def _empty_is_default(cls, value: Any) -> Any:
         return {} if value is None else value  # a section whose lines are all commented out

@@ -94,7 +94,7 @@ def test_defaults() -> None:
 
 def test_an_empty_section_is_its_default() -> None:
     """As when all its lines are commented out."""
-    assert made({"contact": None, "solver": None, "output": None}) == made({})
+    assert made({"contact": None, "stop": None, "solver": None, "output": None}) == made({})
 
 
 def test_a_scenario_is_frozen_hashable_and_survives_pickling() -> None:
@@ -198,8 +198,9 @@ def test_numpy_numbers_are_numbers() -> None:
                                          "um, in, Fr"]),
         ({"catheter.bore": REMOVE, "catheter.boar": "1 mm"}, [
          "catheter.boar: unknown key; did you mean 'bore'? allowed: exit, direction, bore, friction_coefficient"]),
-        ({"drive.kind": "force"}, ["drive.kind: 'force' is not built yet; allowed: speed"]),
-        ({"drive.kind": "tip_speed"}, ["drive.kind: 'tip_speed' is not built yet; allowed: speed"]),
+        ({"drive.kind": "forze"}, ["drive.kind: 'forze' is not known here; did you mean 'force'? allowed: speed, "
+                                   "force, tip_speed"]),
+        ({"drive.kind": REMOVE}, ["drive.kind: is missing: what the drive is; allowed: speed, force, tip_speed"]),
         ({"drive.duration": 3}, ["drive.distance: distance and duration are both given; give one of the two"]),
         ({"drive.distance": REMOVE}, ["drive.distance: is missing: how far or how long; give distance: 60 mm, or "
                                       "duration: 30 s"]),
