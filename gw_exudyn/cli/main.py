@@ -13,7 +13,7 @@ from gw_exudyn import __version__
 from gw_exudyn.cli.outcome import exit_code_of
 
 COMMANDS: Mapping[str, str] = MappingProxyType(
-    {name: f"gw_exudyn.cli.{name}" for name in ("run", "check", "plot", "info", "schema")}
+    {name: f"gw_exudyn.cli.{name}" for name in ("run", "check", "plot", "verify", "info", "schema")}
 )
 """Name of each command and the module that holds it as `command`, in the order of the help."""
 
