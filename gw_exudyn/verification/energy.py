@@ -65,7 +65,7 @@ def shipped(name: str) -> Finding:
         if np.abs(result.values(term)).max() > 0.01 * scale:
             curves.append(Curve(term.replace("_", " "), depth, result.values(term) * 1e6, "line"))
     chart = Chart(f"energy-{name}", f"{name}: where the work goes", "time / s", "energy / uJ", tuple(curves))
-    return Finding(tuple(rows), (chart,))
+    return Finding(tuple(rows), (chart,) if scale > FLOOR else ())
 
 
 def _row(

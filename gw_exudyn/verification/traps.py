@@ -256,7 +256,7 @@ def _shape(name: str, title: str, result: Result) -> Chart:
 CASES = (
     *(Case(GROUP, f"tunnelling, {wire}", partial(tunnelling, wire)) for wire in WIRES),
     *(Case(GROUP, f"fold, {wire}, {w * 1e3:g} mm", partial(fold, wire, w)) for wire in WIRES for w in (10e-3, 20e-3)),
-    Case(GROUP, f"dead end, {WIRES[0]}", partial(dead_end, WIRES[0], 1e-3)),
-    Case(GROUP, f"dead end, {WIRES[1]}", partial(dead_end, WIRES[1], 2e-3)),
+    Case(GROUP, f"dead end, {WIRES[0]}", partial(dead_end, WIRES[0], 0.8e-3)),
+    Case(GROUP, f"dead end, {WIRES[1]}", partial(dead_end, WIRES[1], 1.2e-3)),
     *(Case(GROUP, f"narrow {shape}, {wire}", partial(narrow, shape, wire)) for shape in NARROW for wire in WIRES),
 )

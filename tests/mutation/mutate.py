@@ -71,7 +71,7 @@ MUTANTS = (
         KERNEL,
         "if (side == 0) side = pl.y < 0 ? -1 : 1;",
         "side = pl.y < 0 ? -1 : 1;",
-        (evidence("tunnelling"), ("tests/unit/test_contact_kernel.py", "tests/unit/test_contact_memory.py")),
+        (("tests/unit/test_contact_kernel.py", "tests/unit/test_contact_memory.py"), evidence("tunnelling")),
     ),
     Mutant(
         "a catheter without friction",
