@@ -13,7 +13,7 @@ import click
 
 from gw_exudyn.cli import options
 from gw_exudyn.cli.console import put, put_json, put_table, stderr_console, tell
-from gw_exudyn.errors import SolverError
+from gw_exudyn.errors import SolverError, StorageError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -51,7 +51,7 @@ def command(groups: tuple[str, ...], out: str | None, jobs: int | None, as_json:
     from gw_exudyn.verification.registry import cases_of
 
     cases, folder = cases_of(groups), Path(out) if out else FOLDER
-    folder.mkdir(parents=True, exist_ok=True)
+    _make(folder)
     outcomes = _run(cases, jobs or os.cpu_count() or 1)
     write(outcomes, folder, _command_line(groups, out))
     if as_json:
@@ -63,6 +63,15 @@ def command(groups: tuple[str, ...], out: str | None, jobs: int | None, as_json:
     for outcome in failed:
         tell(f"{outcome.case.group}: {outcome.case.name}: {outcome.problem or _failing_words(outcome)}")
     return SolverError.exit_code if failed else 0
+
+
+def _make(folder: Path) -> None:
+    """Find out before the work whether there is a place for it."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = error.strerror or error
+        raise StorageError(f"{folder}: can't be made: {reason}; name another folder (--out)") from error
 
 
 def _command_line(groups: tuple[str, ...], out: str | None) -> str:

@@ -51,3 +51,11 @@ def test_an_unknown_group_is_answered_with_those_there_are(gw, cases):
     done = gw("verify", "--group", "beams")
     assert done.code == 2
     assert "groups: beam, column" in done.err
+
+
+def test_a_file_in_the_way_is_told_before_the_work(gw, cases):
+    Path("taken").write_text("mine")
+    done = gw("verify", "--out", "taken", "--jobs", "1")
+    assert done.code == 7
+    assert "taken: can't be made" in done.err
+    assert "1 of" not in done.err
