@@ -15,7 +15,7 @@ from gw_exudyn.cli.outcome import exit_code_of
 COMMANDS: Mapping[str, str] = MappingProxyType(
     {
         name: f"gw_exudyn.cli.{name}"
-        for name in ("run", "check", "plot", "animate", "compare", "report", "info", "list", "schema")
+        for name in ("run", "check", "plot", "animate", "compare", "report", "verify", "info", "list", "schema")
     }
 )
 """Name of each command and the module that holds it as `command`, in the order of the help."""

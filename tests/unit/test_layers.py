@@ -28,7 +28,8 @@ MAY_IMPORT = {
     "events": ABOVE_RESULT | {"model", "engine"},
     "simulation": ABOVE_RESULT | {"model", "engine", "sampling", "trust", "events"},
     "fmi": ABOVE_RESULT | {"model", "engine", "simulation"},
-    "verification": ABOVE_RESULT | {"metrics", "comparison", "plots", "storage", "model", "engine", "simulation"},
+    "verification": ABOVE_RESULT
+    | {"metrics", "comparison", "plots", "storage", "model", "engine", "trust", "simulation"},
     "sweep": ABOVE_RESULT | {"metrics", "plots", "storage", "model", "engine", "simulation", "fmi"},
 }
 """What each place may import of ours, besides itself. The command line and the package's own face may import all."""
