@@ -12,6 +12,7 @@ from gw_exudyn.engine.assembly import HUB_COORDINATES, System
 from gw_exudyn.engine.library import exudyn
 from gw_exudyn.engine.settings import acceleration_factor, velocity_factor
 from gw_exudyn.model.contact import Contact
+from gw_exudyn.model.kernel import Motion
 
 Floats = NDArray[np.float64]
 
@@ -52,6 +53,7 @@ class Newton:
         self._end = 0.0
         self._last: Floats = np.zeros(0)
         self._last_move = 0.0
+        self._before = Motion(count)
         self.reset_counts()
 
     def reset_counts(self) -> None:
@@ -170,11 +172,11 @@ class Newton:
         change = q - self._last
         self._last_move = _largest_move(change)
         share = min(1.0, self._limit / max(self._last_move, 1e-30))
-        before = self._contact.gaps()
+        self._before.take(self._contact.motion)
         for _ in range(2):
             back = (share - 1) * change
             self._evaluate(q + back, q_t + velocity_factor(self._step) * back, predicted)
-            free = self._contact.share_to_touch(before)
+            free = self._contact.share_to_touch(self._before)
             if free >= 1:
                 break
             share *= free

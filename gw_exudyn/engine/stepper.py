@@ -23,7 +23,7 @@ from gw_exudyn.errors import SolverError
 from gw_exudyn.model import Model
 from gw_exudyn.model.contact import NOWHERE, Contact
 from gw_exudyn.model.drive import Drive
-from gw_exudyn.model.energy import Energies, Snapshot, advanced, snapshot, wall_start
+from gw_exudyn.model.energy import Energies, Snapshot, advanced, snapshot
 
 Floats = NDArray[np.float64]
 
@@ -156,7 +156,7 @@ class Stepper:
         self._instant = self._look()
         acceleration = np.asarray(self.system.mbs.systemData.GetODE2Coordinates_tt())[HUB_COORDINATES:].reshape(-1, 3)
         self.energies = advanced(
-            self.energies, self.contact, self._wall_start, before, self._instant, acceleration, step
+            self.energies, self.contact, self._wall_energy, before, self._instant, acceleration, step
         )
         released = self.energies.numerical_loss + self.energies.damping_loss - lost
         if released > _LEAST_RELEASE:
@@ -173,7 +173,7 @@ class Stepper:
         values = {
             "push_force": self._instant.push,
             "pull_force": -self._instant.push,
-            "wall_force_max": self.contact.largest_force(),
+            "wall_force_max": self.contact.summary().largest,
             "penetration_max": deepest.depth,
         }
         for name, value in values.items():
@@ -186,7 +186,7 @@ class Stepper:
     def _prepare(self) -> None:
         self.contact.start_step()
         self.contact.evaluate()
-        self._wall_start = wall_start(self.contact)
+        self._wall_energy = self.contact.summary().energy
 
     def push_force(self) -> float:
         """Force of the drive on the wire along the catheter, N, positive when pushing: the constraint's, less the hub's
