@@ -32,8 +32,8 @@ def walls(facets: int) -> int:
 
 
 def best_of(repeat: int, wire: str, segments: int) -> list[Outcome]:
-    """The fastest run of each vessel, by processor time; taken in turns, so that a machine that changes its speed treats
-    both alike."""
+    """The fastest run of each vessel, by processor time; taken in turns, so that a machine that changes its speed
+    treats both alike."""
     runs = [[run(bend(facets, wire, segments)) for facets in FACETS] for _ in range(repeat)]
     return [min(column, key=lambda outcome: outcome.work) for column in zip(*runs, strict=True)]
 

@@ -107,7 +107,7 @@ class Contact:
         return first_in_vessel(self.motion, self.wire, self._half_bore)
 
     def _about_corners(self) -> tuple[Ints32, Ints32, Floats]:
-        """For each corner, at the present place: the nearest body, whether it is ahead of the tip, and its offset, m."""
+        """For each corner, at the present place: the nearest body, whether ahead of the tip, and its offset, m."""
         if self._corners_at is None or not np.array_equal(self._corners_at[0], self.motion.q):
             found = self._kernel.nearest(self.motion, self._first_in_vessel(), len(self.walls.corner))
             self._corners_at = self.motion.q.copy(), found
@@ -250,6 +250,7 @@ def _arrays(wire: Wire, walls: Walls) -> dict[str, NDArray[np.generic]]:
         "wall_fade_lo": walls.fade_lo,
         "wall_fade_hi": walls.fade_hi,
         "wall_friction": walls.friction,
+        "wire_friction": wire.friction_factor,
         "wall_sharp": walls.sharp,
         "wall_tube": walls.tube,
         "corner_x": walls.corner[:, 0],

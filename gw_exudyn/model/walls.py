@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gw_exudyn.model.outline import Outline
+from gw_exudyn.model.patches import Patch, divided, friction_at
 
 Floats = NDArray[np.float64]
 
@@ -81,23 +83,36 @@ class Tube:
 
 
 def build_walls(
-    outline: Outline, tube: Tube, radius: float, friction: float, tube_friction: float, seam_reach: float
+    outline: Outline,
+    tube: Tube,
+    radius: float,
+    friction: float,
+    tube_friction: float,
+    seam_reach: float,
+    patches: Sequence[Patch] = (),
 ) -> Walls:
-    """All walls for a wire of `radius` (m). seam_reach : m, by which walls that run flush past the exit overlap."""
+    """All walls for a wire of `radius` (m). seam_reach : m, by which walls that run flush past the exit overlap.
+    patches : of the vessel, with a friction of their own; walls are divided where one begins or ends."""
     lines = vessel_polylines(outline, tube)
     flush = [_is_flush(lines, lip) for lip in _lips(tube)]
-    polylines = [_vessel_line(line, closed, tube, seam_reach) for line, closed in lines]
+    shortest = radius / 4
+    polylines = [
+        _vessel_line(divided(line, patches, shortest, closed=closed), closed, tube, seam_reach)
+        for line, closed in lines
+    ]
     polylines += _tube_polylines(tube, flush, seam_reach)
-    parts = [_segments(line, radius, tube_friction if line.tube else friction) for line in polylines]
+    parts = [_segments(line, radius) for line in polylines]
     corners = [_corners(line) for line in polylines]
     lips = np.array([lip for lip, is_flush in zip(_lips(tube), flush, strict=True) if not is_flush]).reshape(-1, 2)
     corner = np.concatenate([*corners, lips])
     corner_tube = np.arange(len(corner)) >= len(corner) - len(lips)
     joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    middle = joined["start"] + joined["tangent"] * joined["length"][:, None] / 2
     return Walls(
         **joined,
+        friction=np.where(joined["tube"], tube_friction, friction_at(middle, patches, friction)),
         corner=corner,
-        corner_friction=np.where(corner_tube, tube_friction, friction),
+        corner_friction=np.where(corner_tube, tube_friction, friction_at(corner, patches, friction)),
         corner_tube=corner_tube,
     )
 
@@ -231,7 +246,7 @@ def _corners(line: _Polyline) -> Floats:
     return found
 
 
-def _segments(line: _Polyline, radius: float, friction: float) -> dict[str, NDArray[np.generic]]:
+def _segments(line: _Polyline, radius: float) -> dict[str, NDArray[Any]]:
     points, turns = line.points, _turns(line)
     count = len(points) if line.closed else len(points) - 1
     edge = (np.roll(points, -1, axis=0) - points)[:count]
@@ -250,7 +265,6 @@ def _segments(line: _Polyline, radius: float, friction: float) -> dict[str, NDAr
         "fade_lo": np.array([end.fade(radius, x) for end, x in zip(before, length, strict=True)]),
         "fade_hi": np.array([end.fade(radius, x) for end, x in zip(after, length, strict=True)]),
         "sharp": np.array([a.sharp + 2 * b.sharp for a, b in zip(before, after, strict=True)], np.int32),
-        "friction": np.full(count, friction),
         "tube": np.full(count, line.tube),
     }
 

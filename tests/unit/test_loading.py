@@ -48,9 +48,8 @@ def test_five_mistakes_give_five_good_lines(tmp_path: Path) -> None:
         "catheter: {bore: 1.2 mm}\ncontact:\n  friction_coefficient: no\n"
         "drive: {kind: speed, speed: 2 mm/s, distance: 30 mm}\n"
     )
-    allowed = (
-        "model, diameter, length, bending_stiffness, density, damping_time, segments, grading, tip_shape, imperfection"
-    )
+    allowed = "model, diameter, length, bending_stiffness, density, damping_time, segments, grading, tip_shape, "
+    allowed += "imperfection, friction"
     assert told(path) == [
         f"{path}:2: wire.model: 'universal-i' is not in the catalogue; did you mean 'universal-ii'? "
         "known: amplatz-super-stiff, universal-ii",
@@ -177,7 +176,7 @@ class TestOverrides:
             ("wire.segments=abc", "'abc' is text; a whole number from 1 to 5000 is needed, without quotes"),
             ("wire.segmnts=1", "unknown key; did you mean 'segments'? allowed: model, diameter, length, "
                                "bending_stiffness, density, "
-             "damping_time, segments, grading, tip_shape, imperfection"),
+             "damping_time, segments, grading, tip_shape, imperfection, friction"),
             ("wire.segments.x=1", "wire.segments is 50, a single value; there is no 'x' in it"),
             ("vessel.points.4=1", "there is no item '4'; vessel.points has 4 items, 0 to 3"),
             ("vessel.points.-1=1", "there is no item '-1'; vessel.points has 4 items, 0 to 3"),

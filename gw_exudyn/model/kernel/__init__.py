@@ -57,6 +57,7 @@ class System(ctypes.Structure):
                 "wall_fade_lo",
                 "wall_fade_hi",
                 "wall_friction",
+                "wire_friction",
             )
         ),
         *((name, _INTS) for name in ("wall_sharp", "wall_tube")),

@@ -31,6 +31,7 @@ typedef struct {
     const double *wall_length, *wall_lo, *wall_hi;             /* (walls): length, where the weight has fallen to zero */
     const double *wall_fade_lo, *wall_fade_hi;                 /* (walls): width over which it falls */
     const double *wall_friction;                               /* (walls) */
+    const double *wire_friction;                               /* (bodies + 1): factor at the nodes, the proximal end first */
     const int *wall_sharp;                                     /* (walls): bit 0: start points into the lumen, bit 1: end does */
     const int *wall_tube;                                      /* (walls): 1 catheter, 0 vessel */
     const double *corner_x, *corner_y, *corner_friction;       /* (corners) */
@@ -78,6 +79,7 @@ typedef struct {
     double d_gap, d_rate;           /* d normal / d gap, d normal / d rate */
     double stiffness;               /* N/m, of the normal spring here, without damper and held share */
     double d_slip, d_normal;        /* d tangential / d slip, d tangential / d normal */
+    double d_friction;              /* N, d tangential / d friction coefficient */
     double elastic;                 /* m, the slip that the tangential spring keeps */
     double energy;                  /* J, in the normal and the tangential spring */
 } Law;
@@ -100,7 +102,7 @@ static Law contact_law(const System *sys, double gap, double rate, double elasti
     /* A spring that softens from 0.9 of the limit on and is at the limit at 1.1: force and stiffness are continuous. */
     const double soft = 0.1;
     const double limit = friction * law.normal, modulus_t = sys->tangential_stiffness;
-    law.tangential = law.d_slip = law.d_normal = law.elastic = 0;
+    law.tangential = law.d_slip = law.d_normal = law.d_friction = law.elastic = 0;
     if (limit > 0) {
         const double sign = elastic_slip < 0 ? -1 : 1, ratio = magnitude(elastic_slip) * modulus_t / limit;
         const double kept = ratio < 1 + soft ? ratio : 1 + soft, over = kept > 1 - soft ? kept - (1 - soft) : 0;
@@ -109,6 +111,7 @@ static Law contact_law(const System *sys, double gap, double rate, double elasti
         law.tangential = -sign * limit * share;
         law.d_slip = -modulus_t * slope_t;
         law.d_normal = -sign * friction * (share - ratio * slope_t);
+        law.d_friction = -sign * law.normal * (share - ratio * slope_t);
         law.energy += limit * limit / modulus_t * (0.5 * kept * kept - over * over * over / (12 * soft));
     }
     return law;
@@ -154,7 +157,7 @@ static void node_pair(const System *sys, const Motion *m, Pairs *p, int i, doubl
     const double weight = smooth(a) * smooth(z);
     if (weight <= 0) { store_open(p, i, gap); return; }
     const double rate = nx * (v[0] - ay * v[2]) + ny * (v[1] + ax * v[2]);
-    const Law law = contact_law(sys, gap, rate, p->start[i] + slip, sys->wall_friction[w], held);
+    const Law law = contact_law(sys, gap, rate, p->start[i] + slip, sys->wall_friction[w] * sys->wire_friction[b + 1], held);
     store(p, i, gap, &law, weight, slip);
 
     const double G[3] = {nx, ny, -nx * ay + ny * ax}, T[3] = {tx, ty, -tx * ay + ty * ax};   /* of gap and of slip */
@@ -249,7 +252,11 @@ static void corner_pair(const System *sys, const Motion *m, Pairs *p, int i, dou
     for (int c = 0; c < 3; c++) U[c] = T[c] + bends * (mx * pl.ux + my * pl.uy) * P[c];
     U[2] += my * pl.tx - mx * pl.ty;
     const double rate = G[0] * (v[0] * cb + v[1] * sb) + G[1] * (-v[0] * sb + v[1] * cb) + G[2] * v[2];
-    const Law law = contact_law(sys, gap, rate, p->start[i] + slip, sys->corner_friction[k], held);
+    /* The wire's factor at the place that touches, and how the friction changes as the place moves along the segment. */
+    const double h = sys->half_length[b], change = (sys->wire_friction[b + 1] - sys->wire_friction[b]) / (2 * h);
+    const double friction = sys->corner_friction[k] * (sys->wire_friction[b] + change * (pl.foot + h));
+    const double slope = pl.over == 0 ? sys->corner_friction[k] * change : 0, along[3] = {-slope, 0, slope * pl.y};
+    const Law law = contact_law(sys, gap, rate, p->start[i] + slip, friction, held);
     store(p, i, gap, &law, weight, slip);
 
     const double d_normal = law.d_gap * fq + law.d_rate * fv;
@@ -257,6 +264,7 @@ static void corner_pair(const System *sys, const Motion *m, Pairs *p, int i, dou
     for (int r = 0; r < 3; r++) F[r] = law.normal * G[r] + law.tangential * T[r];
     for (int r = 0; r < 3; r++) for (int c = 0; c < 3; c++)
         K[r][c] = weight * (d_normal * G[c] * (G[r] + law.d_normal * T[r]) + law.d_slip * fq * T[r] * U[c])
+                + weight * fq * law.d_friction * along[c] * T[r]
                 + weight * fq * (law.normal * pl.curvature * P[r] + law.tangential * bends * N[r]) * P[c]
                 + fq * F[r] * (far[c] * w_near + near[c] * w_far);
     const double wn = weight * law.normal * fq, wt = weight * law.tangential * fq;
