@@ -189,13 +189,8 @@ class Newton:
         Far from the end of the iteration that part is left out, since a tangent without it does not throw the wire
         about.
         """
-        motion, wire = self._contact.motion, self._contact.wire
-        on_proximal_end = -np.asarray(self._data.GetAECoordinates())[HUB_COORDINATES:].reshape(-1, 2)
-        along = motion.c * on_proximal_end[:, 0] + motion.s * on_proximal_end[:, 1]
-        along[:-1] += motion.c[:-1] * on_proximal_end[1:, 0] + motion.s[:-1] * on_proximal_end[1:, 1]
-        if self._last_move > _NEAR * wire.radius:
-            np.minimum(along, 0.0, out=along)
-        self._contact.tangent[8::9] += wire.lengths / 2 * along
+        reaction = np.asarray(self._data.GetAECoordinates())[HUB_COORDINATES:]
+        self._contact.add_turning(reaction, stiffening=self._last_move > _NEAR * self._contact.wire.radius)
 
     def _after_newton(self, _mbs: Any, _time: float) -> list[float]:
         """Refuse what converged to the wrong thing; the step is then cut."""

@@ -90,7 +90,7 @@ class Contact:
         self.reach = 5 * wire.radius
         self._half_bore = float(np.abs(walls.start[walls.tube, 1]).max(initial=0.0)) or np.inf
         self.first = 0
-        self._corners_at: tuple[Floats, tuple[Ints32, Ints32, Floats]] | None = None
+        self._corners_at: tuple[Floats, tuple[int, Ints32, Ints32, Floats]] | None = None
         self._summary: Summary | None = None
 
     @property
@@ -103,21 +103,19 @@ class Contact:
         """(9 n,): 3 x 3 blocks by rows; d force/dq, weighted as the last `evaluate` was told."""
         return self._kernel.tangent
 
-    def _first_in_vessel(self) -> int:
-        return first_in_vessel(self.motion, self.wire, self._half_bore)
-
-    def _about_corners(self) -> tuple[Ints32, Ints32, Floats]:
-        """For each corner, at the present place: the nearest body, whether ahead of the tip, and its offset, m."""
+    def _about_corners(self) -> tuple[int, Ints32, Ints32, Floats]:
+        """At the present place: the first body in the vessel; for each corner the nearest body, whether the corner is
+        ahead of the tip, and its offset, m. The end of a step asks, and the start of the next."""
         if self._corners_at is None or not np.array_equal(self._corners_at[0], self.motion.q):
-            found = self._kernel.nearest(self.motion, self._first_in_vessel(), len(self.walls.corner))
-            self._corners_at = self.motion.q.copy(), found
+            first = first_in_vessel(self.motion, self.wire, self._half_bore)
+            found = self._kernel.nearest(self.motion, first, len(self.walls.corner))
+            self._corners_at = self.motion.q.copy(), (first, *found)
         return self._corners_at[1]
 
     def start_step(self) -> None:
         """Find the pairs for a step that starts at the present place, and recall what they carried."""
         self.motion.start_step()
-        self.first = self._first_in_vessel()
-        nearest = self._about_corners()[0]
+        self.first, nearest, _, _ = self._about_corners()
         while not self._kernel.candidates(
             self.motion, self.memory.side, nearest, self.first, self.reach, self.nodes, self.corners
         ):
@@ -139,6 +137,14 @@ class Contact:
         self._summary = None
         self.motion.struct.predicted = int(predicted)
         self._kernel.evaluate(self.motion, self.nodes, self.corners, position, velocity)
+
+    def add_turning(self, reaction: Floats, *, stiffening: bool) -> None:
+        """Add to the tangent how the joints' forces turn each segment as it turns.
+
+        reaction : (2 n,), N, minus the force on each segment's proximal end, contiguous. stiffening : leave out what
+        makes a segment resist its turn less.
+        """
+        self._kernel.add_turning(self.motion, reaction, stiffening=stiffening)
 
     def share_to_touch(self, before: Motion) -> float:
         """Share of the way from the place `before` to the present one where the first contact closes.
@@ -175,7 +181,7 @@ class Contact:
         side = self.memory.side
         if not len(side):
             return side
-        body, ahead, offset = self._about_corners()
+        _, body, ahead, offset = self._about_corners()
         fresh = np.where(offset < 0, -1.0, 1.0)
         kept: Floats = np.where((ahead == 1) | (body < 0), 0.0, np.where(side == 0, fresh, side))
         return kept
@@ -200,7 +206,7 @@ class Contact:
 
     def crossing(self) -> tuple[int, int] | None:
         """(body, wall) where the wire's axis crosses a wall of the vessel or the catheter now, or None."""
-        return self._kernel.crossing(self.motion, self._first_in_vessel())
+        return self._kernel.crossing(self.motion, self._about_corners()[0])
 
 
 _ROOM = 256

@@ -269,6 +269,12 @@ class Kernel:
         )
         return body, ahead, offset
 
+    def add_turning(self, motion: Motion, reaction: Floats, *, stiffening: bool) -> None:
+        """Add to `tangent` how the joints' forces, minus `reaction` (2 n,), N, turn the segments as they turn."""
+        self._library.gw_contact_turning(
+            self._address, motion.address, reaction.ctypes.data, stiffening, self._outputs[1]
+        )
+
     def share_to_touch(self, before: Motion, nodes: Pairs, corners: Pairs) -> float:
         """Share of the way from the place of `before` to the last evaluated one where the first contact closes."""
         return float(
@@ -318,6 +324,7 @@ def _load() -> ctypes.CDLL:
         "gw_contact_index": ([pointer], None),
         "gw_contact_candidates": ([pointer] * 4 + [integer] + [pointer] * 2, integer),
         "gw_contact_nearest": ([pointer] * 2 + [integer] + [pointer] * 3, None),
+        "gw_contact_turning": ([pointer] * 3 + [integer, pointer], None),
         "gw_contact_share_to_touch": ([pointer] * 4, real),
         "gw_contact_summary": ([pointer] * 5, None),
         "gw_contact_unstable": ([pointer] * 5, integer),

@@ -356,6 +356,17 @@ EXPORT void gw_contact_evaluate(const System *sys, const Motion *m, Pairs *nodes
     }
 }
 
+/* Add to the tangent how the joints' forces turn each segment as it turns. reaction (2 bodies): N, minus the force on the
+ * proximal end. What makes the segment resist the turn less is left out where `stiffening` is set. */
+EXPORT void gw_contact_turning(const System *sys, const Motion *m, const double *reaction, int stiffening, double *tangent)
+{
+    for (int b = 0; b < sys->bodies; b++) {
+        double along = -(m->c[b] * reaction[2 * b] + m->s[b] * reaction[2 * b + 1]);
+        if (b + 1 < sys->bodies) along -= m->c[b] * reaction[2 * b + 2] + m->s[b] * reaction[2 * b + 3];
+        if (along < 0 || !stiffening) tangent[9 * b + 8] += sys->half_length[b] * along;
+    }
+}
+
 /* Weight from which a pair is the one that counts where two share a contact. */
 static const double COUNTS = 0.5;
 
