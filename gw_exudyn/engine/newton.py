@@ -12,6 +12,7 @@ from gw_exudyn.engine.assembly import HUB_COORDINATES, System
 from gw_exudyn.engine.library import exudyn
 from gw_exudyn.engine.settings import acceleration_factor, velocity_factor
 from gw_exudyn.model.contact import Contact
+from gw_exudyn.model.kernel import Motion
 
 Floats = NDArray[np.float64]
 
@@ -58,6 +59,7 @@ class Newton:
         self._end = 0.0
         self._last: Floats = np.zeros(0)
         self._last_move = 0.0
+        self._before = Motion(count)
         self.reset_counts()
 
     def reset_counts(self) -> None:
@@ -176,11 +178,11 @@ class Newton:
         change = q - self._last
         self._last_move = _largest_move(change)
         share = min(1.0, self._limit / max(self._last_move, 1e-30))
-        before = self._contact.gaps()
+        self._before.take(self._contact.motion)
         for _ in range(2):
             back = (share - 1) * change
             self._evaluate(q + back, q_t + velocity_factor(self._step) * back, predicted)
-            free = self._contact.share_to_touch(before)
+            free = self._contact.share_to_touch(self._before)
             if free >= 1:
                 break
             share *= free
@@ -193,14 +195,8 @@ class Newton:
         Far from the end of the iteration that part is left out, since a tangent without it does not throw the wire
         about.
         """
-        motion, wire = self._contact.motion, self._contact.wire
-        multipliers = np.asarray(self._data.GetAECoordinates())[self._system.hub.constraints :]
-        on_proximal_end = -multipliers.reshape(-1, 2)
-        along = motion.c * on_proximal_end[:, 0] + motion.s * on_proximal_end[:, 1]
-        along[:-1] += motion.c[:-1] * on_proximal_end[1:, 0] + motion.s[:-1] * on_proximal_end[1:, 1]
-        if self._last_move > _NEAR * wire.radius:
-            np.minimum(along, 0.0, out=along)
-        self._contact.tangent[8::9] += wire.lengths / 2 * along
+        reaction = np.asarray(self._data.GetAECoordinates())[self._system.hub.constraints :]
+        self._contact.add_turning(reaction, stiffening=self._last_move > _NEAR * self._contact.wire.radius)
 
     def _after_newton(self, _mbs: Any, _time: float) -> list[float]:
         """Refuse what converged to the wrong thing; the step is then cut."""

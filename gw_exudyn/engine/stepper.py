@@ -23,7 +23,7 @@ from gw_exudyn.errors import SolverError
 from gw_exudyn.model import Model
 from gw_exudyn.model.contact import NOWHERE, Contact, Deepest
 from gw_exudyn.model.drive import AnyDrive, Force
-from gw_exudyn.model.energy import Energies, Snapshot, advanced, snapshot, wall_start
+from gw_exudyn.model.energy import Energies, Snapshot, advanced, snapshot
 from gw_exudyn.model.hub import HubEnergies, HubInstant, hub_advanced
 from gw_exudyn.model.tip_speed import Leg, TipSpeed
 
@@ -217,7 +217,7 @@ class Stepper:
         self._instant = self._look()
         acceleration = np.asarray(self.system.mbs.systemData.GetODE2Coordinates_tt())[HUB_COORDINATES:].reshape(-1, 3)
         self.energies = advanced(
-            self.energies, self.contact, self._wall_start, before, self._instant, acceleration, step
+            self.energies, self.contact, self._wall_energy, before, self._instant, acceleration, step
         )
         if isinstance(self.drive, Force):
             mass, damping = self.drive.hub_mass, self.drive.hub_damping
@@ -237,7 +237,7 @@ class Stepper:
         values = {
             "push_force": self._instant.push,
             "pull_force": -self._instant.push,
-            "wall_force_max": self.contact.largest_force(),
+            "wall_force_max": self.contact.summary().largest,
             "penetration_max": deepest.depth,
         }
         for name, value in values.items():
@@ -251,7 +251,7 @@ class Stepper:
     def _prepare(self) -> None:
         self.contact.start_step()
         self.contact.evaluate()
-        self._wall_start = wall_start(self.contact)
+        self._wall_energy = self.contact.summary().energy
 
     @property
     def hub(self) -> HubInstant:

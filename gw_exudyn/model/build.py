@@ -15,6 +15,7 @@ from gw_exudyn.model.drive import AnyDrive, Drive, build_drive
 from gw_exudyn.model.frame import Frame
 from gw_exudyn.model.law import SINKING, Surroundings, contact_law, law_warnings, surroundings, value_or
 from gw_exudyn.model.outline import Outline, build_outline
+from gw_exudyn.model.patches import Patch
 from gw_exudyn.model.walls import Tube, Walls, build_walls, corners_into, tube_polylines, vessel_polylines
 from gw_exudyn.model.wire import DEFAULT_IMPERFECTION, Wire, build_wire
 
@@ -114,7 +115,7 @@ def build(scenario: Scenario) -> Model:
     check(scenario, outline, tube, drive)
     around = surroundings(outline)
     law = contact_law(scenario, around)
-    contact = scenario.contact
+    contact, patches = scenario.contact, _patches(scenario, frame)
     walls = build_walls(
         outline,
         tube,
@@ -122,9 +123,34 @@ def build(scenario: Scenario) -> Model:
         contact.friction_coefficient,
         value_or(scenario.catheter.friction_coefficient, contact.friction_coefficient),
         seam_reach=6 * wire.radius,
+        patches=patches,
     )
-    warnings = (*law_warnings(scenario, around), *_too_coarse(scenario, wire), *_shaft_alone(scenario))
+    warnings = (
+        *law_warnings(scenario, around),
+        *_too_coarse(scenario, wire),
+        *_shaft_alone(scenario),
+        *_off_the_walls(patches, walls),
+    )
     return Model(scenario, frame, wire, walls, law, drive, outline, tube, around, warnings)
+
+
+def _patches(scenario: Scenario, frame: Frame) -> list[Patch]:
+    """The patches of a scenario, in the catheter's frame."""
+    ends = [(patch, *frame.points_in(np.array([patch.start, patch.end]))) for patch in scenario.contact.patches]
+    return [Patch(start, end, patch.within, patch.friction_coefficient) for patch, start, end in ends]
+
+
+def _off_the_walls(patches: list[Patch], walls: Walls) -> list[str]:
+    """Patches that hold no wall: a slip of the ruler."""
+    vessel = ~walls.tube
+    start, end = walls.start[vessel], (walls.start + walls.tangent * walls.length[:, None])[vessel]
+    places = np.vstack([start, (start + end) / 2, end])
+    return [
+        f"contact.patches.{i}: no wall of the vessel lies within {patch.within * 1e3:.6g} mm of its line; "
+        "it changes nothing"
+        for i, patch in enumerate(patches)
+        if len(places) and (patch.distance(places) > patch.within * (1 + 1e-9)).all()
+    ]
 
 
 def _too_coarse(scenario: Scenario, wire: Wire) -> list[str]:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gw_exudyn.model.contact import Contact
-from gw_exudyn.model.kernel import Motion, Pairs
+from gw_exudyn.model.kernel import Motion
 from gw_exudyn.model.wire import Wire
 
 Floats = NDArray[np.float64]
@@ -84,41 +84,25 @@ def joint_moments(wire: Wire, motion: Motion) -> Floats:
     return moments
 
 
-@dataclass(frozen=True)
-class WallStart:
-    """Gaps (m) and stored energies (J) of the pairs at the start of a step, in the order of the pair lists."""
-
-    node_gap: Floats
-    corner_gap: Floats
-    energy: float
-
-
-def stored_in_walls(contact: Contact) -> float:
-    """J, in the normal and tangential springs of all pairs, at the last `evaluate`."""
-    return float(contact.nodes.energy.sum() + contact.corners.energy.sum())
-
-
-def wall_start(contact: Contact) -> WallStart:
-    """At the start of a step, right after the pairs were found and evaluated there."""
-    return WallStart(contact.nodes.gap.copy(), contact.corners.gap.copy(), stored_in_walls(contact))
-
-
 def advanced(
     before: Energies,
     contact: Contact,
-    start: WallStart,
+    wall_before: float,
     old: Snapshot,
     new: Snapshot,
     acceleration: Floats,
     step: float,
 ) -> Energies:
-    """The energies after a step. `contact` is evaluated at its end; acceleration : (n, 3) at its end; step : s."""
+    """The energies after a step. `contact` is evaluated at its end; acceleration : (n, 3) at its end; step : s.
+
+    wall_before : J, in the springs of the walls at its start.
+    """
     wire = contact.wire
     moved, travelled = new.q - old.q, new.travel - old.travel
     turned = relative_angles(moved[:, 2])
     bend = relative_angles(new.q[:, 2]) - wire.rest_angle
-    friction, wall_damping = _wall_losses(contact, start)
-    wall = stored_in_walls(contact)
+    walls = contact.summary()
+    friction, wall_damping, wall = walls.friction, walls.damping, walls.energy
     inertia = np.column_stack([wire.mass, wire.mass, wire.inertia]) * acceleration
     resisted = wire.joint_damping * relative_angles(new.v[:, 2])
     damping = float(wire.joint_damping @ turned**2) / step
@@ -129,7 +113,7 @@ def advanced(
         + float((wire.joint_stiffness * bend) @ turned) - (new.elastic - old.elastic)
         + float(resisted @ turned) - damping
         + float((inertia * moved).sum()) - (new.kinetic - old.kinetic)
-        - float((contact.force * moved).sum()) - (wall - start.energy) - friction - wall_damping
+        - float((contact.force * moved).sum()) - (wall - wall_before) - friction - wall_damping
         - _finite_turns(contact, old, new, inertia)
     )  # fmt: skip
     stored = new.elastic + wall + new.kinetic
@@ -144,28 +128,6 @@ def advanced(
         start=before.start,
         largest_work=max(before.largest_work, abs(before.insertion_work + work), stored),
     )
-
-
-def _wall_losses(contact: Contact, start: WallStart) -> tuple[float, float]:
-    """(friction loss, wall damping loss) over the step, J, from the pairs.
-
-    Sliding is the slip that the tangential spring did not take up; the force opposes it, so the loss is never negative.
-    """
-    law = contact.law
-    friction = damping = 0.0
-    for pairs, gap in ((contact.nodes, start.node_gap), (contact.corners, start.corner_gap)):
-        slid = pairs.slip - (pairs.elastic - pairs.start)
-        friction -= float((pairs.weight * pairs.tangential * slid)[pairs.normal > 0].sum())
-        static = _static_force(pairs, law.toe, law.stiffness)
-        damping += float((pairs.weight * (static - pairs.normal) * (pairs.gap - gap)).sum())
-    return friction, damping
-
-
-def _static_force(pairs: Pairs, toe: float, stiffness: float) -> Floats:
-    """(p,), N: the normal force without its damper."""
-    u = np.clip(toe - pairs.gap, 0.0, 2 * toe)
-    force: Floats = stiffness * (u**2 / (4 * toe) + np.maximum(-pairs.gap - toe, 0.0))
-    return force
 
 
 def _finite_turns(contact: Contact, old: Snapshot, new: Snapshot, inertia: Floats) -> float:

@@ -37,6 +37,7 @@ BORE = Quantity("m", 0.05e-3, 50e-3, "mm")
 
 FRICTION = Number(0.0, 2.0)
 FRICTION_OR_NONE = Number(0.0, 2.0, optional=True)
+PATCH_REACH = Quantity("m", 1e-6, 5.0, "mm")
 WALL_STIFFNESS = Quantity("N/m", 1e-3, 1e9, "N/m", auto=True)
 WALL_DAMPING = Quantity("N*s/m", 0.0, 1e6, "N*s/m", auto=True)
 

@@ -16,6 +16,7 @@ from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 from gw_exudyn.errors import Problem
 from gw_exudyn.scenario.drive import Drive
 from gw_exudyn.scenario.fields import Section, Text, wrong
+from gw_exudyn.scenario.friction import FrictionPatch
 from gw_exudyn.scenario.kinds import (
     ANGLE,
     BORE,
@@ -65,7 +66,9 @@ class CatheterSpec(Section):
 class ContactSpec(Section):
     """Contact of the wire with walls.
 
-    friction_coefficient : Coulomb. wall_stiffness : N/m, per contact; None is chosen by the model. wall_damping : N
+    friction_coefficient : Coulomb, of all walls but the patches'; the wire's own `friction` multiplies it. patches :
+        walls of the vessel with a friction coefficient of their own.
+    wall_stiffness : N/m, per contact; None is chosen by the model. wall_damping : N
         s/m, at a penetration of 2 % of the wire's radius; None is chosen. tangential_stiffness : N/m, while sticking;
         None is the wall stiffness.
     """
@@ -83,6 +86,9 @@ class ContactSpec(Section):
     )
     tangential_stiffness: Annotated[float | None, WALL_STIFFNESS] = Field(
         default=None, description="tangential stiffness while the wire sticks; auto is the wall stiffness"
+    )
+    patches: tuple[FrictionPatch, ...] = Field(
+        default=(), max_length=10_000, description="walls of the vessel whose friction differs; the last one counts"
     )
 
 

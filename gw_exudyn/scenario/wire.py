@@ -8,6 +8,7 @@ from pydantic import Field, ValidationInfo, WithJsonSchema, field_validator
 
 from gw_exudyn.scenario.catalogue import CatalogueWire, catalogue_names, load_catalogue
 from gw_exudyn.scenario.fields import Choice, Number, Section, Text, Whole, wrong
+from gw_exudyn.scenario.friction import FrictionStretch, check_stretches
 from gw_exudyn.scenario.kinds import (
     BENDING_STIFFNESS,
     DAMPING_TIME,
@@ -111,7 +112,8 @@ class WireSpec(Section):
     estimate : which of the catalogue's values was taken.
     damping_time : s, joint damping over joint stiffness. segments : number of rigid bodies.
     grading : length of the proximal over that of the distal segment. imperfection : 1/m, rest curvature; None takes
-        the model's default.
+        the model's default. friction : stretches on which the walls' friction coefficient is multiplied by a factor; 1
+        elsewhere.
     """
 
     what: ClassVar[str] = "the wire"
@@ -157,6 +159,9 @@ class WireSpec(Section):
     tip_shape: TipShape = Field(default=TipShape(kind="straight"), description="shape of the tip at rest")
     imperfection: Annotated[float | None, REST_CURVATURE] = Field(
         default=None, description="rest curvature of the whole wire"
+    )
+    friction: tuple[FrictionStretch, ...] = Field(
+        default=(), max_length=10_000, description="stretches whose friction differs, as under a coating"
     )
 
     @field_validator("model", mode="after")
@@ -248,6 +253,12 @@ class WireSpec(Section):
             wanted, allowed = format_quantity(shape.length, "mm"), format_quantity(length, "mm")
             raise wrong(f"is {wanted} long, the wire only {allowed}")
         return shape
+
+    @field_validator("friction", mode="after")
+    @classmethod
+    def _on_the_wire(cls, stretches: tuple[FrictionStretch, ...], info: ValidationInfo) -> tuple[FrictionStretch, ...]:
+        check_stretches(stretches, info.data.get("length"))
+        return stretches
 
 
 def _known_wire(cls: type[WireSpec], info: ValidationInfo) -> CatalogueWire | None:

@@ -50,7 +50,7 @@ def test_five_mistakes_give_five_good_lines(tmp_path: Path) -> None:
     )
     allowed = (
         "model, diameter, length, estimate, floppy_tip, bending_stiffness, stiffness_factor, density, damping_time, "
-        "segments, grading, tip_shape, imperfection"
+        "segments, grading, tip_shape, imperfection, friction"
     )
     assert told(path) == [
         f"{path}:2: wire.model: 'universal-i' is not in the catalogue; did you mean 'universal-ii'? "
@@ -178,7 +178,7 @@ class TestOverrides:
             ("wire.segments=abc", "'abc' is text; a whole number from 1 to 5000 is needed, without quotes"),
             ("wire.segmnts=1", "unknown key; did you mean 'segments'? allowed: model, diameter, length, estimate, "
                                "floppy_tip, bending_stiffness, stiffness_factor, density, "
-             "damping_time, segments, grading, tip_shape, imperfection"),
+             "damping_time, segments, grading, tip_shape, imperfection, friction"),
             ("wire.segments.x=1", "wire.segments is 50, a single value; there is no 'x' in it"),
             ("vessel.points.4=1", "there is no item '4'; vessel.points has 4 items, 0 to 3"),
             ("vessel.points.-1=1", "there is no item '-1'; vessel.points has 4 items, 0 to 3"),

@@ -174,7 +174,7 @@ def test_numpy_numbers_are_numbers() -> None:
                                                   "2"]),
         ({"contact.regularisation_speed": 1}, ["contact.regularisation_speed: unknown key; allowed: "
                                                "friction_coefficient, wall_stiffness, "
-                                               "wall_damping, tangential_stiffness"]),
+                                               "wall_damping, tangential_stiffness, patches"]),
         ({"vessel.kind": "branches"}, ["vessel.kind: 'branches' is not built yet; allowed: straight, arc, polygon"]),
         ({"vessel.kind": "strait"}, ["vessel.kind: 'strait' is not known here; did you mean 'straight'? allowed: "
                                      "straight, arc, polygon"]),
