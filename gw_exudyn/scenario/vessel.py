@@ -8,6 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
+from gw_exudyn.scenario.branches import BranchesVessel
 from gw_exudyn.scenario.fields import KIND_TAG, Choice, Faults, Form, Section, Table, Text, Whole, wrong
 from gw_exudyn.scenario.kinds import ANGLE, ARC_RADIUS, LEAD_LENGTH, POINT, VESSEL_DIAMETER, VESSEL_LENGTH
 from gw_exudyn.scenario.outline import (
@@ -19,15 +20,16 @@ from gw_exudyn.scenario.outline import (
     counter_clockwise,
     read_outline,
 )
+from gw_exudyn.scenario.regions import Lumen
 from gw_exudyn.scenario.words import shown
 
-VESSEL_KINDS = Choice(("straight", "arc", "polygon"), later=("branches", "centreline"))
+VESSEL_KINDS = Choice(("straight", "arc", "branches", "polygon"), later=("centreline",))
 _STEEPEST_FACET = math.radians(45)
 
 _END = Field(default="open", description="open: the far end is no wall; dead: it is closed")
 
 
-class StraightVessel(Section):
+class StraightVessel(Lumen):
     """A straight channel: its lumen is 0 <= x <= length, abs(y) <= diameter / 2.
 
     length, diameter : m. end : `open`, no wall at x = length, or `dead`.
@@ -40,8 +42,12 @@ class StraightVessel(Section):
     diameter: Annotated[float, VESSEL_DIAMETER] = Field(description="width of the lumen", examples=["4 mm"])
     end: Annotated[str, Choice(("open", "dead"))] = _END
 
+    def _whole(self) -> list[tuple[float, float]]:
+        half = self.diameter / 2
+        return [(0.0, -half), (self.length, -half), (self.length, half), (0.0, half)]
 
-class ArcVessel(Section):
+
+class ArcVessel(Lumen):
     """A channel whose centreline runs `lead_in` along +x from the origin, turns on an arc, and goes straight on.
 
     radius : m, of the centreline. angle : rad, positive to the left. diameter, lead_in, lead_out : m, lead_out
@@ -95,7 +101,7 @@ class ArcVessel(Section):
     def _keeps_clear_of_itself(self) -> Self:
         import shapely
 
-        if not shapely.Polygon(self._walls()).is_valid:
+        if not shapely.Polygon(self._whole()).is_valid:
             faults = Faults()
             faults.add(
                 ("angle",),
@@ -104,7 +110,7 @@ class ArcVessel(Section):
             faults.raise_if_any()
         return self
 
-    def _walls(self) -> list[tuple[float, float]]:
+    def _whole(self) -> list[tuple[float, float]]:
         """Points of the right wall, then of the left wall back, m."""
         side = math.copysign(1.0, self.angle)
         course = [(0.0, 0.0, 0.0)] if self.lead_in > 0 else []
@@ -122,7 +128,7 @@ class ArcVessel(Section):
         return [(round(x, 14), round(y, 14)) for x, y in right + left[::-1]]
 
 
-class PolygonVessel(Section):
+class PolygonVessel(Lumen):
     """A lumen with a closed outline.
 
     points : ((x, y), ...), m, counter-clockwise, the first not repeated at the end. open_edges : indices of the edges
@@ -132,6 +138,9 @@ class PolygonVessel(Section):
     kind: Literal["polygon"] = "polygon"
     points: Points
     open_edges: tuple[int, ...] = ()
+
+    def _whole(self) -> Points:
+        return self.points
 
 
 class PolygonForm(Section):
@@ -209,6 +218,7 @@ def _tag(vessel: Any) -> str:
 VesselForm = Annotated[
     Annotated[StraightVessel, Tag(f"{KIND_TAG}straight")]
     | Annotated[ArcVessel, Tag(f"{KIND_TAG}arc")]
+    | Annotated[BranchesVessel, Tag(f"{KIND_TAG}branches")]
     | Annotated[PolygonForm, Tag(f"{KIND_TAG}polygon")],
     Discriminator(_tag),
 ]
@@ -229,7 +239,7 @@ def _check_kind(vessel: Any) -> None:
 
 
 Vessel = Annotated[
-    StraightVessel | ArcVessel | PolygonVessel,
-    Form(VesselForm, (StraightVessel, ArcVessel, PolygonVessel), check=_check_kind),
+    StraightVessel | ArcVessel | BranchesVessel | PolygonVessel,
+    Form(VesselForm, (StraightVessel, ArcVessel, BranchesVessel, PolygonVessel), check=_check_kind),
 ]
 """The vessel as the program sees it, read from any of the forms."""

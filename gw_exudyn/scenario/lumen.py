@@ -1,0 +1,274 @@
+"""The lumen of a tree of branches: their union with rounded corners, as a closed outline with its open ends.
+
+All areas are put on a grid of a picometre, so that walls which lie on each other make no slivers; what is smaller than
+CLEAN of the smallest diameter is smoothed away at the end.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gw_exudyn.scenario.course import Course, arc_facets
+
+if TYPE_CHECKING:
+    import shapely
+
+Floats = NDArray[np.float64]
+
+GRID = 1e-12
+"""Grid of all areas, m."""
+
+CLEAN = 2.5e-3
+"""Detail over the smallest diameter that the outline does not keep."""
+
+_CORNER = math.radians(5)
+"""Turn from which a corner into the lumen is one that a fillet rounds, and no facet of a curve."""
+
+_SAME_PLACE = 1e-6
+"""Ends of branches closer than this, m, meet in one joint."""
+
+
+@dataclass(frozen=True)
+class Branch:
+    """One branch to unite.
+
+    name : for messages. course : its centre line and radius. fillet : m, of corners into the lumen where it meets a
+        branch before it, and of its own bends. ends_open : its beginning, its end; None where it depends on whether
+        another branch joins there. side : for a branch that leaves in the middle of another: a point (2,) on that
+        one's axis and the axis' heading, rad; what lies beyond the axis is cut off.
+    """
+
+    name: str
+    course: Course
+    fillet: float
+    ends_open: tuple[bool | None, bool | None]
+    side: tuple[Floats, float] | None = None
+
+
+@dataclass(frozen=True)
+class Fault:
+    """What keeps branches from making a lumen. branch : index, or None for all. key : what to look at, may be empty."""
+
+    branch: int | None
+    key: str
+    message: str
+
+
+@dataclass(frozen=True)
+class Lumen:
+    """points : ((x, y), ...), m, counter-clockwise, the first not repeated. open_edges : indices, rising. regions : an
+    outline (k, 2), m, of each branch for itself.
+    """
+
+    points: tuple[tuple[float, float], ...]
+    open_edges: tuple[int, ...]
+    regions: tuple[Floats, ...]
+
+
+@dataclass(frozen=True)
+class _End:
+    branch: int
+    end: int
+    cap: Floats
+    is_open: bool
+    joined: bool
+
+    @property
+    def words(self) -> str:
+        return "beginning" if self.end == 0 else "end"
+
+
+def unite(branches: Sequence[Branch]) -> Lumen | list[Fault]:
+    """The lumen of the branches, or what keeps them from making one."""
+    import shapely
+
+    areas = [_area(branch) for branch in branches]
+    ends, joints = _ends_and_joints(branches)
+    parts = shapely.get_parts(shapely.union_all([*areas, *joints], grid_size=GRID))
+    if len(parts) > 1:
+        return _apart(branches, areas)
+    lumen = parts[0]
+    clean = CLEAN * min(2 * float(branch.course.radius.min()) for branch in branches)
+    lumen = _filleted(lumen, branches, areas, clean)
+    lumen, loops = _without_specks(lumen, clean)
+    faults = [_loop_fault(branches, areas, loop) for loop in loops] + _end_faults(branches, areas, lumen, ends, clean)
+    if faults:
+        return faults
+    points = _cleaned(lumen, clean)
+    caps = [end.cap for end in ends if end.is_open]
+    return Lumen(
+        tuple((float(x), float(y)) for x, y in points),
+        _open_edges(points, caps, 2 * clean),
+        tuple(np.asarray(area.exterior.coords)[:-1] for area in areas),
+    )
+
+
+def _area(branch: Branch) -> shapely.Polygon:
+    """The area of a branch. Raises CourseError where it folds."""
+    import shapely
+
+    pieces = [shapely.Polygon(quad) for quad in branch.course.quads()]
+    if branch.side is None:
+        return shapely.union_all(pieces, grid_size=GRID)
+    origin, axis = branch.side
+    point, heading, radius = branch.course.at(0.0)
+    # Both walls run back to the parent's axis, and end there.
+    back = radius / abs(math.tan(heading - axis)) + radius
+    along, across = np.array([math.cos(heading), math.sin(heading)]), np.diff(branch.course.cap(0), axis=0)[0] / 2
+    root = shapely.Polygon(
+        [point - across - back * along, point - across, point + across, point + across - back * along]
+    )
+    reach = 2 * (branch.course.length + back + 2 * float(branch.course.radius.max()))
+    left = np.array([-math.sin(axis), math.cos(axis)]) * math.copysign(1.0, math.sin(heading - axis))
+    forward = reach * np.array([math.cos(axis), math.sin(axis)])
+    half = shapely.Polygon(
+        [origin - forward, origin + forward, origin + forward + reach * left, origin - forward + reach * left]
+    )
+    whole = shapely.union_all([root, *pieces], grid_size=GRID)
+    return shapely.intersection(whole, half, grid_size=GRID)
+
+
+def _ends_and_joints(branches: Sequence[Branch]) -> tuple[list[_End], list[shapely.Polygon]]:
+    """Every end, and the areas that close the wedge where ends of branches meet in one point."""
+    import shapely
+
+    caps = [(i, end, branch.course.cap(end)) for i, branch in enumerate(branches) for end in (0, -1)]
+    middles = np.array([cap.mean(axis=0) for _, _, cap in caps])
+    ends, joints = [], []
+    for k, (i, end, cap) in enumerate(caps):
+        near = np.flatnonzero(np.hypot(*(middles - middles[k]).T) <= _SAME_PLACE)
+        near = [m for m in near if not (caps[m][1] == 0 and branches[caps[m][0]].side is not None)]
+        joined = len(near) > 1 and k in near
+        if joined and k == min(near):
+            joints.append(shapely.MultiPoint(np.concatenate([caps[m][2] for m in near])).convex_hull)
+        wanted = branches[i].ends_open[end]
+        ends.append(_End(i, end, cap, bool(wanted) if wanted is not None else not joined, joined))
+    return ends, joints
+
+
+def _apart(branches: Sequence[Branch], areas: Sequence[shapely.Polygon]) -> list[Fault]:
+    """Which branches do not touch what comes before them."""
+    import shapely
+
+    group, left = [0], set(range(1, len(branches)))
+    while near := {i for i in left if areas[i].intersection(shapely.union_all([areas[j] for j in group])).area > 0}:
+        group += sorted(near)
+        left -= near
+    united = shapely.union_all([areas[j] for j in group])
+    first = min(left, key=lambda i: areas[i].distance(united))
+    nearest = min(group, key=lambda j: areas[j].distance(areas[first]))
+    gap = areas[first].distance(areas[nearest]) * 1e3
+    text = f"there is a gap of {gap:.4g} mm between {branches[first].name!r} and {branches[nearest].name!r}"
+    return [Fault(first, "points", f"{text}; every branch must overlap another, move its points")]
+
+
+def _filleted(
+    lumen: shapely.Polygon, branches: Sequence[Branch], areas: Sequence[shapely.Polygon], clean: float
+) -> shapely.Polygon:
+    """The lumen with its corners rounded: what a disc of the fillet's radius, rolled along the walls' outside, does not
+    reach is added at each corner.
+    """
+    import shapely
+
+    wanted: dict[float, list[Floats]] = {}
+    for corner in _corners_into(lumen):
+        owners = [i for i, area in enumerate(areas) if area.boundary.distance(shapely.Point(corner)) < clean]
+        radius = branches[max(owners)].fillet if owners else 0.0
+        if radius > 0:
+            wanted.setdefault(radius, []).append(corner)
+    webs = []
+    width = min(2 * float(branch.course.radius.min()) for branch in branches)
+    for radius, corners in wanted.items():
+        facets = arc_facets(math.pi / 2, radius, max(width, radius))
+        wide = lumen.buffer(radius, join_style="mitre", mitre_limit=20)
+        closed = wide.buffer(-radius, join_style="round", quad_segs=facets)
+        spots = shapely.MultiPoint(corners)
+        added = shapely.difference(closed, lumen, grid_size=GRID)
+        webs += [web for web in shapely.get_parts(added) if web.area > clean**2 and web.distance(spots) < clean]
+    return shapely.union_all([lumen, *webs], grid_size=GRID) if webs else lumen
+
+
+def _corners_into(lumen: shapely.Polygon) -> list[Floats]:
+    points = np.asarray(lumen.exterior.coords)[:-1]
+    if not lumen.exterior.is_ccw:
+        points = points[::-1]
+    turns = _turns(points)
+    return [point for point, turn in zip(points, turns, strict=True) if turn < -_CORNER]
+
+
+def _turns(points: Floats) -> Floats:
+    after = np.roll(points, -1, axis=0) - points
+    before = np.roll(after, 1, axis=0)
+    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    turns: Floats = np.arctan2(cross, (before * after).sum(axis=1))
+    return turns
+
+
+def _without_specks(lumen: shapely.Polygon, clean: float) -> tuple[shapely.Polygon, list[shapely.Polygon]]:
+    """The lumen without its holes, and the holes that are more than specks."""
+    import shapely
+
+    holes = [shapely.Polygon(ring) for ring in lumen.interiors]
+    return shapely.Polygon(lumen.exterior), [hole for hole in holes if not hole.buffer(-clean).is_empty]
+
+
+def _loop_fault(branches: Sequence[Branch], areas: Sequence[shapely.Polygon], loop: shapely.Polygon) -> Fault:
+    touching = [i for i, area in enumerate(areas) if area.distance(loop) < 1e-9]
+    names = " and ".join(repr(branches[i].name) for i in touching)
+    x, y = loop.representative_point().coords[0]
+    text = f"{names or 'the branches'} make a loop round an island at ({x * 1e3:.6g}, {y * 1e3:.6g}) mm"
+    return Fault(max(touching, default=None), "", f"{text}; loops are not supported, end a branch before it closes one")
+
+
+def _end_faults(
+    branches: Sequence[Branch],
+    areas: Sequence[shapely.Polygon],
+    lumen: shapely.Polygon,
+    ends: Sequence[_End],
+    clean: float,
+) -> list[Fault]:
+    """Ends that are neither free nor inside another branch."""
+    import shapely
+
+    rim, faults = lumen.exterior.buffer(clean), []
+    for end in ends:
+        line = shapely.LineString(end.cap)
+        free = line.intersection(rim).length / line.length
+        branch = branches[end.branch]
+        if end.joined or (end.end == 0 and branch.side is not None):
+            continue
+        others = [branches[i].name for i, a in enumerate(areas) if i != end.branch and a.intersects(line)]
+        inside = " and ".join(repr(name) for name in others) or "the rest of the vessel"
+        if end.end == -1 and branch.side is not None and free < 0.01:
+            text = f"the branch ends inside {inside}; make it longer"
+            faults.append(Fault(end.branch, "length", text))
+        elif end.is_open and 0.01 < free < 0.99:
+            text = f"the {end.words} lies half inside {inside} and half outside"
+            faults.append(Fault(end.branch, "", f"{text}; move it, so that it lies wholly inside or wholly outside"))
+    return faults
+
+
+def _cleaned(lumen: shapely.Polygon, clean: float) -> Floats:
+    """Corners of the outline, counter-clockwise, without those that lie within `clean` of the line past them."""
+    import shapely
+
+    points = np.asarray(shapely.orient_polygons(lumen).exterior.coords)[:-1]
+    # Simplification keeps the first point: let it be a true corner.
+    points = np.roll(points, -int(np.argmax(np.abs(_turns(points)))), axis=0)
+    return np.asarray(shapely.Polygon(points).simplify(clean).exterior.coords)[:-1]
+
+
+def _open_edges(points: Floats, caps: Sequence[Floats], near: float) -> tuple[int, ...]:
+    import shapely
+
+    lines = [shapely.LineString(cap).buffer(near) for cap in caps]
+    edges = [shapely.LineString([a, b]) for a, b in zip(points, np.roll(points, -1, axis=0), strict=True)]
+    return tuple(
+        i for i, edge in enumerate(edges) if edge.length > 2 * near and any(line.contains(edge) for line in lines)
+    )
