@@ -6,7 +6,7 @@ import functools
 import math
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
@@ -139,8 +139,8 @@ class BranchesVessel(Lumen):
         faults.raise_if_any()
         found = united(self.branches)
         if isinstance(found, list):
-            for loc, message in found:
-                faults.add(loc, message)
+            for fault in found:
+                faults.add(fault.loc, fault.message)
         faults.raise_if_any()
         return self
 
@@ -163,7 +163,15 @@ class BranchesVessel(Lumen):
         )
 
 
-Faulty = list[tuple[tuple[str | int, ...], str]]
+class Wrong(NamedTuple):
+    """What is wrong with branches. loc : place in the vessel. where : (x, y), m, or None."""
+
+    loc: tuple[str | int, ...]
+    message: str
+    where: tuple[float, float] | None = None
+
+
+Faulty = list[Wrong]
 
 
 def _check_tree(branches: Sequence[BranchSpec], faults: Faults) -> None:
@@ -190,7 +198,7 @@ def _check_tree(branches: Sequence[BranchSpec], faults: Faults) -> None:
 
 @functools.lru_cache(maxsize=32)
 def united(branches: tuple[BranchSpec, ...]) -> UnitedLumen | Faulty:
-    """The lumen of the branches, or what is wrong, as (place in the vessel, message)."""
+    """The lumen of the branches, or what is wrong with them."""
     from gw_exudyn.scenario.course import CourseError
     from gw_exudyn.scenario.lumen import Branch, unite
 
@@ -213,14 +221,14 @@ def united(branches: tuple[BranchSpec, ...]) -> UnitedLumen | Faulty:
         try:
             part.course.quads()
         except CourseError as error:
-            faults.append((("branches", index[part.name], "diameter"), str(error)))
+            faults.append(Wrong(("branches", index[part.name], error.key), str(error), error.where))
     if faults:
         return faults
     found = unite(parts)
     if not isinstance(found, list):
         return found
     return [
-        (("branches",) if f.branch is None else tuple(k for k in ("branches", f.branch, f.key) if k != ""), f.message)
+        Wrong(("branches",) if f.branch is None else tuple(k for k in ("branches", f.branch, f.key) if k != ""), f.message)
         for f in found
     ]
 
@@ -251,7 +259,7 @@ def _courses(branches: Sequence[BranchSpec], faults: Faulty) -> dict[str, Course
                 points = spec.points or _ray(spec, courses[spec.parent or ""])
                 courses[spec.name] = make_course(points, _table(spec.diameter), spec.bend_radius)
             except CourseError as error:
-                faults.append((tuple(key for key in ("branches", i, error.key) if key != ""), str(error)))
+                faults.append(Wrong(("branches", i, error.key), str(error), error.where))
         left = [(i, spec) for i, spec in left if (i, spec) not in ready]
     return courses
 

@@ -24,11 +24,11 @@ _SAME = 1e-9  # m
 
 
 class CourseError(ValueError):
-    """A centre line that makes no lumen. key : the key of the branch to look at."""
+    """A centre line that makes no lumen. key : the key of the branch to look at. where : (x, y), m, or None."""
 
-    def __init__(self, key: str, message: str) -> None:
+    def __init__(self, key: str, message: str, where: tuple[float, float] | None = None) -> None:
         super().__init__(message)
-        self.key = key
+        self.key, self.where = key, where
 
 
 @dataclass(frozen=True)
@@ -84,15 +84,15 @@ class Course:
             a, b = self.points[i], self.points[i + 1]
             quad = np.array([a - r0 * first[k], b - r1 * last[k], b + r1 * last[k], a + r0 * first[k]])
             if min((quad[1] - quad[0]) @ unit[k], (quad[2] - quad[3]) @ unit[k]) <= 0:
-                raise CourseError("", _folds(a, b, max(r0, r1)))
+                x, y = (a + b) / 2
+                raise CourseError("diameter", _folds(x, y, max(r0, r1)), (float(x), float(y)))
             found.append(quad)
         return found
 
 
-def _folds(a: Floats, b: Floats, radius: float) -> str:
-    x, y = (a + b) / 2 * 1e3
+def _folds(x: float, y: float, radius: float) -> str:
     return (
-        f"the lumen folds at ({x:.6g}, {y:.6g}) mm: the centre line bends there more tightly than the lumen's radius, "
+        f"the lumen folds at ({x * 1e3:.6g}, {y * 1e3:.6g}) mm: the centre line bends there more tightly than the lumen's radius, "
         f"{radius * 1e3:.6g} mm; take a smaller diameter there or a gentler bend"
     )
 

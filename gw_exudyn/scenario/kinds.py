@@ -32,6 +32,7 @@ BRANCH_LENGTH = Quantity("m", 1e-3, 5.0, "mm", optional=True)
 BRANCH_ANGLE = Quantity("rad", -math.radians(150), math.radians(150), "deg", optional=True)
 BRANCH_PLACE = Quantity("m", 0.0, 5.0, "mm", optional=True)
 BEND_RADIUS = Quantity("m", 0.0, 5.0, "mm")
+DRAWING_LENGTH = Quantity("m", 1e-3, 10.0, "mm", optional=True)
 FILLET = Quantity("m", 0.0, 0.1, "mm", optional=True)
 BORE = Quantity("m", 0.05e-3, 50e-3, "mm")
 

@@ -6,13 +6,12 @@ import functools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from gw_exudyn.scenario.fields import Section
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
 NEAR = 0.1e-3
@@ -38,6 +37,8 @@ class Lumen(Section):
 
     def _regions(self) -> tuple[Region, ...]:
         """Every branch."""
+        import numpy as np
+
         return (Region(WHOLE, np.array(self._whole())),)
 
     def _whole(self) -> Sequence[tuple[float, float]]:
@@ -62,6 +63,7 @@ class Lumen(Section):
         where its parent's lumen ends. A point in a rounded corner, or up to NEAR outside of the lumen, is in the nearest
         branch; one that is not finite is in none.
         """
+        import numpy as np
         import shapely
 
         places = np.asarray(points, dtype=float)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, NoReturn, Self
 
 from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
 from gw_exudyn.scenario.branches import BranchesVessel
+from gw_exudyn.scenario.centreline import CentrelineForm
 from gw_exudyn.scenario.fields import KIND_TAG, Choice, Faults, Form, Section, Table, Text, Whole, wrong
-from gw_exudyn.scenario.kinds import ANGLE, ARC_RADIUS, LEAD_LENGTH, POINT, VESSEL_DIAMETER, VESSEL_LENGTH
+from gw_exudyn.scenario.kinds import ANGLE, ARC_RADIUS, DRAWING_LENGTH, LEAD_LENGTH, POINT, VESSEL_DIAMETER, VESSEL_LENGTH
 from gw_exudyn.scenario.outline import (
     MOST_POINTS,
     Outline,
@@ -18,12 +19,11 @@ from gw_exudyn.scenario.outline import (
     check_outline,
     closed,
     counter_clockwise,
-    read_outline,
 )
 from gw_exudyn.scenario.regions import Lumen
 from gw_exudyn.scenario.words import shown
 
-VESSEL_KINDS = Choice(("straight", "arc", "branches", "polygon"), later=("centreline",))
+VESSEL_KINDS = Choice(("straight", "arc", "branches", "centreline", "polygon", "file"))
 _STEEPEST_FACET = math.radians(45)
 
 _END = Field(default="open", description="open: the far end is no wall; dead: it is closed")
@@ -144,28 +144,44 @@ class PolygonVessel(Lumen):
 
 
 class PolygonForm(Section):
-    """A lumen with a closed outline, from a CSV file or a list of points."""
+    """A lumen with a closed outline, from a CSV, WKT, GeoJSON or SVG file, or a list of points."""
 
     what: ClassVar[str] = "a polygon vessel"
 
     kind: Annotated[Literal["polygon"], Choice(("polygon",))]
+    unit: Annotated[str | None, Text("unit", optional=True)] = Field(
+        default=None, description="unit of the coordinates in a WKT or GeoJSON file", examples=["mm"]
+    )
+    length: Annotated[float | None, DRAWING_LENGTH] = Field(
+        default=None, description="width of the viewBox of an SVG file", examples=["120 mm"]
+    )
+    id: Annotated[str | None, Text("id", optional=True)] = Field(
+        default=None, description="id of the lumen's path in an SVG file that has several"
+    )
     file: Annotated[Outline | None, Text("file name", optional=True)] = Field(
         default=None,
-        description="CSV file, relative to this; header x,y (metres) or x [mm],y [mm]; a column open marks open ends",
+        description="CSV, WKT, GeoJSON or SVG file, relative to this; CSV: header x,y (metres) or x [mm],y [mm], "
+        "and a column open that marks open ends",
     )
     points: Annotated[Points | None, Table(POINT, 3, MOST_POINTS, "point", optional=True)] = Field(
         default=None, validate_default=True, description="corners of the outline in order"
     )
     open_edges: Annotated[tuple[int, ...], Table(Whole(0, MOST_POINTS), 0, MOST_POINTS, "edge")] = Field(
-        default=(), description="edges that are open ends: edge i goes from point i to point i + 1"
+        default=(),
+        description="edges that are open ends: edge i goes from point i to point i + 1"
     )
 
     @field_validator("file", mode="after")
     @classmethod
     def _read(cls, name: Any, info: ValidationInfo) -> Outline | None:
+        from gw_exudyn.scenario.outline_files import read_any_outline
+
         if name is None:
             return None
-        outline = read_outline(Path((info.context or {}).get("folder", "."), str(name)))
+        if not {"unit", "length", "id"} <= info.data.keys():
+            return None  # one of them is wrong itself, which is told already
+        path = Path((info.context or {}).get("folder", "."), str(name))
+        outline = read_any_outline(path, info.data["unit"], info.data["length"], info.data["id"])
         check_outline(outline)
         return outline
 
@@ -193,7 +209,7 @@ class PolygonForm(Section):
         outline, points = info.data.get("file"), info.data.get("points")
         if edges and outline is not None and outline.open_edges:
             raise wrong("stands beside the column 'open' of the file; give one of the two")
-        count = len(outline.points) if outline is not None else len(points or ())
+        count = outline.edges if outline is not None else len(points or ())
         faults = Faults()
         for i, edge in enumerate(edges):
             if count and edge >= count:
@@ -206,8 +222,23 @@ class PolygonForm(Section):
     def resolve(self) -> PolygonVessel:
         """The outline, counter-clockwise."""
         given = self.file or Outline(self.points or (), self.open_edges)
-        points, edges = counter_clockwise(given.points, given.open_edges or self.open_edges)
+        points, edges = counter_clockwise(given.points, given.open_edges or given.among_points(self.open_edges))
         return PolygonVessel(points=points, open_edges=edges)
+
+
+class VesselFile(Section):
+    """A vessel in a file of its own, which holds what would stand here. The loader puts it in this place."""
+
+    what: ClassVar[str] = "the file of a vessel"
+
+    kind: Annotated[Literal["file"], Choice(("file",))]
+    file: Annotated[str, Text("file name")] = Field(
+        description="YAML file, relative to this, with the keys of a vessel", examples=["vessels/phantom.yaml"]
+    )
+
+    def resolve(self) -> NoReturn:
+        """Not reached where a scenario is loaded."""
+        raise wrong("a vessel's file is read by load_scenario and scenario_from_dict only; load the scenario with these")
 
 
 def _tag(vessel: Any) -> str:
@@ -219,6 +250,8 @@ VesselForm = Annotated[
     Annotated[StraightVessel, Tag(f"{KIND_TAG}straight")]
     | Annotated[ArcVessel, Tag(f"{KIND_TAG}arc")]
     | Annotated[BranchesVessel, Tag(f"{KIND_TAG}branches")]
+    | Annotated[CentrelineForm, Tag(f"{KIND_TAG}centreline")]
+    | Annotated[VesselFile, Tag(f"{KIND_TAG}file")]
     | Annotated[PolygonForm, Tag(f"{KIND_TAG}polygon")],
     Discriminator(_tag),
 ]
