@@ -27,6 +27,9 @@ GRID = 1e-12
 CLEAN = 2.5e-3
 """Detail over the smallest diameter that the outline does not keep."""
 
+_STEP = 0.05
+"""Height over the smallest diameter of steps in a wall that the outline does not keep."""
+
 _CORNER = math.radians(5)
 """Turn from which a corner into the lumen is one that a fillet rounds, and no facet of a curve."""
 
@@ -100,8 +103,8 @@ def unite(branches: Sequence[Branch]) -> Lumen | list[Fault]:
     faults = [_loop_fault(branches, areas, loop) for loop in loops] + _end_faults(branches, areas, lumen, ends, clean)
     if faults:
         return faults
-    points = _cleaned(lumen, clean)
     caps = [end.cap for end in ends if end.is_open]
+    points = _without_steps(_cleaned(lumen, clean, caps), caps, _STEP / CLEAN * clean)
     return Lumen(
         tuple((float(x), float(y)) for x, y in points),
         _open_edges(points, caps, 2 * clean),
@@ -254,14 +257,59 @@ def _end_faults(
     return faults
 
 
-def _cleaned(lumen: shapely.Polygon, clean: float) -> Floats:
-    """Corners of the outline, counter-clockwise, without those that lie within `clean` of the line past them."""
+def _cleaned(lumen: shapely.Polygon, clean: float, caps: Sequence[Floats]) -> Floats:
+    """Corners of the outline, counter-clockwise, without those that lie within `clean` of the line past them; where an
+    open end begins or ends, a corner stays even if the wall goes straight on.
+    """
     import shapely
 
     points = np.asarray(shapely.orient_polygons(lumen).exterior.coords)[:-1]
-    # Simplification keeps the first point: let it be a true corner.
-    points = np.roll(points, -int(np.argmax(np.abs(_turns(points)))), axis=0)
-    return np.asarray(shapely.Polygon(points).simplify(clean).exterior.coords)[:-1]
+    kept = {int(np.argmax(np.abs(_turns(points))))}
+    for corner in (corner for cap in caps for corner in cap):
+        far = np.hypot(*(points - corner).T)
+        if far.min() < clean:
+            kept.add(int(np.argmin(far)))
+    first, *others = sorted(kept)
+    points = np.roll(points, -first, axis=0)
+    stops = [0, *(i - first for i in others), len(points)]
+    ring = np.concatenate([points, points[:1]])
+    pieces = [
+        np.asarray(shapely.LineString(ring[a : b + 1]).simplify(clean).coords)[:-1] if b - a > 1 else ring[a:b]
+        for a, b in zip(stops, stops[1:], strict=False)
+    ]
+    return np.concatenate(pieces)
+
+
+def _without_steps(points: Floats, caps: Sequence[Floats], highest: float) -> Floats:
+    """The outline without low steps, left where branches of all but fitting widths meet: the walls on both sides of a
+    step are drawn on to where they cross, or to its middle.
+    """
+    ends = np.concatenate([*caps, np.full((1, 2), np.inf)])
+    while len(points) > 4:
+        turns, after = _turns(points), np.roll(points, -1, axis=0)
+        step = (turns * np.roll(turns, -1) < 0) & (np.hypot(*(after - points).T) < highest)
+        at_cap = np.hypot(*np.moveaxis(points[:, None] - ends[None], -1, 0)).min(axis=1) < highest
+        found = np.flatnonzero(step & ~at_cap & ~np.roll(at_cap, -1))
+        if not len(found):
+            break
+        points = np.roll(points, 1 - int(found[0]), axis=0)  # the step is now from point 1 to point 2
+        a, b, c, d = points[:4]
+        meeting, middle = _crossing(a, b, d, c), (b + c) / 2
+        if meeting is None or np.hypot(*(meeting - middle)) > 2 * highest:
+            meeting = middle
+        points = np.concatenate([points[:1], meeting[None], points[3:]])
+    return points
+
+
+def _crossing(a: Floats, b: Floats, c: Floats, d: Floats) -> Floats | None:
+    """Where the line through a and b crosses that through c and d; None where they run alike."""
+    along, other = b - a, d - c
+    across = along[0] * other[1] - along[1] * other[0]
+    if abs(across) < 1e-6 * np.hypot(*along) * np.hypot(*other):
+        return None
+    part = ((c - a)[0] * other[1] - (c - a)[1] * other[0]) / across
+    found: Floats = a + part * along
+    return found
 
 
 def _open_edges(points: Floats, caps: Sequence[Floats], near: float) -> tuple[int, ...]:
