@@ -35,9 +35,9 @@ if TYPE_CHECKING:
 class Drawing:
     """What is drawn, in the scenario's plane, m.
 
-    lumen : (k, 2) outline. walls, catheter : polylines. open_ends : (2, 2) each. corners : (k, 2), those that the wire
-        can turn round. branches : centre line or outline by name. wire : (n + 1, 2) nodes at the start. diameter : m, of
-        the wire.
+    lumen : (k, 2) outline. walls, catheter : polylines. open_ends : (2, 2) each. corners : (k, 2), those that the
+        wire can turn round. branches : centre line by name. wire : (n + 1, 2) nodes at the start. diameter : m, of the
+        wire.
     """
 
     title: str

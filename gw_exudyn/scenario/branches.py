@@ -70,7 +70,8 @@ class BranchSpec(Section):
         default=0.0, description="radius of the centre line at its inner points; 0 leaves them sharp"
     )
     fillet: Annotated[float | None, FILLET] = Field(
-        default=None, description="radius of corners into the lumen at bends and bifurcations; the parent's if not given"
+        default=None,
+        description="radius of corners into the lumen at bends and bifurcations; the parent's if not given",
     )
     start: Annotated[str | None, _OPENNESS] = Field(default=None, description="open or dead; of a branch with points")
     end: Annotated[str | None, _OPENNESS] = Field(
@@ -94,12 +95,12 @@ class BranchSpec(Section):
         placed += ["length"] if length is not None else []
         if info.data["points"] is not None:
             if placed:
-                raise wrong(f"{' and '.join(placed)} stand beside points; give points, or parent, at, angle and length")
+                raise wrong(f"{', '.join(placed)} beside points: give points, or parent, at, angle and length")
             return length
         missing = [key for key in ("parent", "at", "angle") if info.data[key] is None]
         missing += ["length"] if length is None else []
         if missing:
-            text = f"{' and '.join(missing)} missing" if placed else "the branch has no course"
+            text = f"the branch lacks {', '.join(missing)}" if placed else "the branch has no course"
             raise wrong(
                 f"{text}: give points, or parent, at, angle and length", missing=True, instead=(*missing, "points")
             )
@@ -177,9 +178,12 @@ Faulty = list[Wrong]
 def _check_tree(branches: Sequence[BranchSpec], faults: Faults) -> None:
     """Names once each, parents there, no circle, a beginning."""
     names = [branch.name for branch in branches]
+    again = [i for i, name in enumerate(names) if name in names[:i]]
+    for i in again:
+        faults.add(("branches", i, "name"), f"{shown(names[i])} is the name of another branch too; rename one")
+    if again:
+        return  # which of them is a parent is not said
     for i, branch in enumerate(branches):
-        if branch.name in names[:i]:
-            faults.add(("branches", i, "name"), f"{shown(branch.name)} is the name of another branch too; rename one")
         if branch.parent is not None and branch.parent not in names:
             others = [name for name in names if name != branch.name]
             allowed = f"{did_you_mean(branch.parent, others)}branches: {', '.join(others) or 'none'}"
@@ -228,7 +232,9 @@ def united(branches: tuple[BranchSpec, ...]) -> UnitedLumen | Faulty:
     if not isinstance(found, list):
         return found
     return [
-        Wrong(("branches",) if f.branch is None else tuple(k for k in ("branches", f.branch, f.key) if k != ""), f.message)
+        Wrong(
+            ("branches",) if f.branch is None else tuple(k for k in ("branches", f.branch, f.key) if k != ""), f.message
+        )
         for f in found
     ]
 
@@ -246,7 +252,7 @@ def _fillet(spec: BranchSpec, by_name: dict[str, BranchSpec]) -> float:
 
 def _courses(branches: Sequence[BranchSpec], faults: Faulty) -> dict[str, Course]:
     """Every branch's course, parents first; what is wrong goes to `faults`."""
-    from gw_exudyn.scenario.course import Course, CourseError, make_course
+    from gw_exudyn.scenario.course import CourseError, make_course
 
     courses: dict[str, Course] = {}
     left = list(enumerate(branches))
@@ -287,5 +293,5 @@ def _table(diameter: Diameters) -> Any:
     if not isinstance(diameter, tuple):
         return DiameterTable(((0.0, diameter),), relative=True)
     if isinstance(diameter[0], tuple):
-        return DiameterTable(diameter, relative=False)  # type: ignore[arg-type]
-    return DiameterTable(((0.0, diameter[0]), (1.0, float(diameter[1]))), relative=True)  # type: ignore[arg-type]
+        return DiameterTable(diameter, relative=False)
+    return DiameterTable(((0.0, diameter[0]), (1.0, float(diameter[1]))), relative=True)

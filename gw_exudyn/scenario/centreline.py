@@ -14,14 +14,17 @@ from gw_exudyn.scenario.branches import BranchesVessel, BranchSpec, united
 from gw_exudyn.scenario.fields import Choice, Faults, Section, Table, Text, wrong
 from gw_exudyn.scenario.kinds import FILLET
 from gw_exudyn.scenario.units import in_si, parse_number
-from gw_exudyn.scenario.words import path_text, shown
+from gw_exudyn.scenario.words import shown
 
 MOST_OUT_OF_PLANE = 0.5
-"""How far from its best plane a centre line may run, over the local radius: the lumen is cut well off its middle beyond."""
+"""How far from its best plane a centre line may run, over the local radius: beyond, the cut is well off its middle."""
 
 _MOST_FILES = 100
 _HEADER = re.compile(r"\s*(x|y|z|radius|branch)\s*(?:\[\s*(.+?)\s*\])?\s*", re.IGNORECASE)
 _FORM = "'x,y,radius' in metres or 'x [mm],y [mm],radius [mm]', with columns z and branch if you like"
+
+_THINNEST, _WIDEST = 0.05e-3, 50e-3
+_UNIT_HINT = "the header names the unit, as radius [mm], else it is metres"
 
 
 @dataclass
@@ -45,9 +48,9 @@ class CentrelineForm(Section):
         description="CSV file, relative to this; header x,y,radius (metres) or x [mm],y [mm],radius [mm]; "
         "columns z (projected on the best plane) and branch (name) if you like",
     )
-    files: Annotated[
-        tuple[str, ...] | None, Table(Text("file name"), 1, _MOST_FILES, "file", optional=True)
-    ] = Field(default=None, validate_default=True, description="several such files, one branch each, named after it")
+    files: Annotated[tuple[str, ...] | None, Table(Text("file name"), 1, _MOST_FILES, "file", optional=True)] = Field(
+        default=None, validate_default=True, description="several such files, one branch each, named after it"
+    )
     fillet: Annotated[float | None, FILLET] = Field(
         default=None, description="radius of corners into the lumen where branches meet"
     )
@@ -126,6 +129,10 @@ def _lines(rows: list[tuple[int, list[str]]], units: dict[str, Any], path: Path)
         except UnitError as error:
             faults.add((), wrong(str(error), file=file, line=number))
             continue
+        if not _THINNEST <= row[3] <= _WIDEST:
+            text = f"radius: {row[3] * 1e3:.6g} mm is outside the plausible 0.05 mm to 50 mm"
+            faults.add((), wrong(f"{text}; {_UNIT_HINT}", file=file, line=number))
+            break  # a slip of units is in every row
         line = found.setdefault(name or whole, Line(name or whole, file, [], []))
         line.rows.append(row)
         line.lines.append(number)
@@ -152,9 +159,6 @@ def _row(cells: list[str], units: dict[str, Any]) -> tuple[str, tuple[float, flo
             values[column] = in_si(parse_number(cell), units[column])
         except UnitError as error:
             raise UnitError(f"{column}: {error}") from None
-    if not 0.05e-3 <= values["radius"] <= 50e-3:
-        text = f"radius: {values['radius'] * 1e3:.6g} mm is outside the plausible 0.05 mm to 50 mm"
-        raise UnitError(f"{text}; the header names the unit, as radius [mm], else it is metres")
     return name, (values["x"], values["y"], values["z"], values["radius"])
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,8 +93,8 @@ class Course:
 
 def _folds(x: float, y: float, radius: float) -> str:
     return (
-        f"the lumen folds at ({x * 1e3:.6g}, {y * 1e3:.6g}) mm: the centre line bends there more tightly than the lumen's radius, "
-        f"{radius * 1e3:.6g} mm; take a smaller diameter there or a gentler bend"
+        f"the lumen folds at ({x * 1e3:.6g}, {y * 1e3:.6g}) mm: the centre line bends there more tightly "
+        f"than the lumen's radius, {radius * 1e3:.6g} mm; take a smaller diameter there or a gentler bend"
     )
 
 
@@ -161,14 +162,14 @@ def _rounded(corners: Floats, radius: float, diameter: float) -> Floats:
         text = f"{radius * 1e3:.6g} mm needs {need[i] * 1e3:.6g} mm between the points {i} and {i + 1}"
         raise CourseError("bend_radius", f"{text}, which are {lengths[i] * 1e3:.6g} mm apart; take a smaller one")
     line = [corners[0]]
-    for i, turn in enumerate(turns):
+    for corner, turn in enumerate(turns):
         facets = arc_facets(abs(turn), radius + diameter / 2, diameter)
-        begin = corners[i + 1] - reach[i] * steps[i] / lengths[i]
+        begin = corners[corner + 1] - reach[corner] * steps[corner] / lengths[corner]
         for angle in np.linspace(0.0, turn, facets + 1):
-            chord, course = 2 * radius * math.sin(abs(angle) / 2), headings[i] + angle / 2
+            chord, course = 2 * radius * math.sin(abs(angle) / 2), headings[corner] + angle / 2
             line.append(begin + chord * np.array([math.cos(course), math.sin(course)]))
     line.append(corners[-1])
-    apart = [True] + [bool(np.hypot(*(b - a)) > _SAME) for a, b in zip(line, line[1:], strict=False)]
+    apart = [True] + [bool(np.hypot(*(b - a)) > _SAME) for a, b in pairwise(line)]
     return np.array([point for point, kept in zip(line, apart, strict=True) if kept])
 
 

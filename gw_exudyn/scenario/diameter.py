@@ -16,7 +16,7 @@ _TABLE = Table(Row(("place", "diameter"), (_PLACE, VESSEL_DIAMETER)), 2, MOST_RO
 
 
 class DiameterKind(Kind):
-    """`4 mm`, `[4 mm, 2 mm]` from the beginning to the end, or `[[0 mm, 4 mm], [10 mm, 3 mm], ...]` along the length."""
+    """`4 mm`, `[4 mm, 2 mm]` from the beginning to the end, or `[[0 mm, 4 mm], [10 mm, 3 mm]]` along the length."""
 
     def read(self, value: Any) -> Diameters:
         """m; a table's places rise from 0, and come twice at most, for a step."""

@@ -69,7 +69,7 @@ def _validated(source: YamlSource, folder: Path) -> Scenario:
     except ValidationError as error:
         told = {problem.path for problem in problems if problem.path}  # what the text got wrong is no second mistake
         if any(path.startswith("vessel.file") for path in told):
-            told.add("vessel.kind")  # the vessel's own file could not be read: that is the one mistake
+            told.add("vessel")  # the vessel's own file could not be read: that is the one mistake
         problems += [problem for problem in problems_of(error, source.places) if problem.path not in told]
     if problems:
         raise ScenarioError(in_order(problems))

@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -145,8 +146,8 @@ def _ends_and_joints(branches: Sequence[Branch]) -> tuple[list[_End], list[shape
     middles = np.array([cap.mean(axis=0) for _, _, cap in caps])
     ends, joints = [], []
     for k, (i, end, cap) in enumerate(caps):
-        near = np.flatnonzero(np.hypot(*(middles - middles[k]).T) <= _SAME_PLACE)
-        near = [m for m in near if not (caps[m][1] == 0 and branches[caps[m][0]].side is not None)]
+        meeting = np.flatnonzero(np.hypot(*(middles - middles[k]).T) <= _SAME_PLACE)
+        near = [int(m) for m in meeting if not (caps[m][1] == 0 and branches[caps[m][0]].side is not None)]
         joined = len(near) > 1 and k in near
         if joined and k == min(near):
             joints.append(shapely.MultiPoint(np.concatenate([caps[m][2] for m in near])).convex_hull)
@@ -254,7 +255,8 @@ def _end_faults(
         elif end.is_open and 0.01 < free < 0.99:
             text = f"the {end.words} lies half inside {inside} and half outside"
             faults.append(Fault(end.branch, "", f"{text}; move it, so that it lies wholly inside or wholly outside"))
-    return faults
+    # Two ends that cut into each other are one mistake: that of the later branch.
+    return [fault for fault in faults if fault.branch == faults[-1].branch]
 
 
 def _cleaned(lumen: shapely.Polygon, clean: float, caps: Sequence[Floats]) -> Floats:
@@ -275,7 +277,7 @@ def _cleaned(lumen: shapely.Polygon, clean: float, caps: Sequence[Floats]) -> Fl
     ring = np.concatenate([points, points[:1]])
     pieces = [
         np.asarray(shapely.LineString(ring[a : b + 1]).simplify(clean).coords)[:-1] if b - a > 1 else ring[a:b]
-        for a, b in zip(stops, stops[1:], strict=False)
+        for a, b in pairwise(stops)
     ]
     return np.concatenate(pieces)
 

@@ -110,7 +110,9 @@ def _key(node: Any, parts: list[str], depth: int, place: str) -> Any:
         return int(parts[depth])
     if not _is_index(part) or len(part) > 9 or int(part) >= len(node):
         known = ", ".join(name for name in names if isinstance(name, str))
-        allowed = f"{parent} has {plural(len(node), 'item')}, 0 to {len(node) - 1}{f', or by name {known}' if known else ''}"
+        allowed = (
+            f"{parent} has {plural(len(node), 'item')}, 0 to {len(node) - 1}{f', or by name {known}' if known else ''}"
+        )
         raise ScenarioError(Problem(path, f"there is no item {shown(part)}; {allowed}", place))
     return int(part)
 

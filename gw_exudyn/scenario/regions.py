@@ -1,4 +1,4 @@
-"""Which branch of a vessel a point lies in. Needs the scenario only, so that a result can be asked long after its run."""
+"""Which branch of a vessel a point lies in. Needs the scenario only: a result can be asked long after its run."""
 
 from __future__ import annotations
 
@@ -60,8 +60,8 @@ class Lumen(Section):
         points : (..., 2), m, in the scenario's plane.
 
         Where branches overlap, at a bifurcation, the one that the file names first has the point: a side branch begins
-        where its parent's lumen ends. A point in a rounded corner, or up to NEAR outside of the lumen, is in the nearest
-        branch; one that is not finite is in none.
+        where its parent's lumen ends. A point in a rounded corner, or up to NEAR outside of the lumen, is in the
+        nearest branch; one that is not finite is in none.
         """
         import numpy as np
         import shapely

@@ -16,8 +16,8 @@ KIND = "file"
 
 
 def insert_vessel(source: YamlSource, folder: Path) -> None:
-    """Replace `vessel: {kind: file, file: vessels/phantom.yaml}` by what that file holds. Changes `source`; what is wrong
-    is added to its problems.
+    """Replace `vessel: {kind: file, file: vessels/phantom.yaml}` by what that file holds. Changes `source`; what is
+    wrong is added to its problems.
     """
     vessel = source.data.get("vessel")
     if not isinstance(vessel, dict) or vessel.get("kind") != KIND:
@@ -34,8 +34,11 @@ def insert_vessel(source: YamlSource, folder: Path) -> None:
     try:
         found = read_yaml(folder / name)
     except ScenarioError as error:
-        # The file itself, or a line in it.
-        source.problems.extend(Problem("vessel.file", p.message, p.file, p.line) for p in error.problems)
+        for problem in error.problems:
+            if problem.line is None:
+                _note(source, "vessel.file", f"{problem.file}: {problem.message}")
+            else:
+                source.problems.append(Problem("vessel.file", problem.message, problem.file, problem.line))
         return
     if found.data.get("kind") == KIND:
         _note(source, "vessel.file", "names a file that names a file again; name the last one")

@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 from xml.parsers import expat
 
 import numpy as np
@@ -25,6 +26,7 @@ CURVE_TOLERANCE = 1e-4
 
 _DEEPEST_SPLIT = 12
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_NO_COMMAND = re.compile(r"[^MmZzLlHhVvCcSsQqTtAa0-9eE+.,\s-]+")
 _STEP = re.compile(r"\s*,?\s*([A-Za-z]+)\s*\(([^)]*)\)")
 
 
@@ -134,7 +136,9 @@ def _one_transform(name: str, n: list[float]) -> Matrix | None:
         return np.diag([n[0], n[-1], 1.0])
     if name in ("skewX", "skewY") and count == 1:
         slope = math.tan(math.radians(n[0]))
-        return np.array([[1, slope, 0], [0, 1, 0], [0, 0, 1]] if name == "skewX" else [[1, 0, 0], [slope, 1, 0], [0, 0, 1]])
+        return np.array(
+            [[1, slope, 0], [0, 1, 0], [0, 0, 1]] if name == "skewX" else [[1, 0, 0], [slope, 1, 0], [0, 0, 1]]
+        )
     if name == "rotate" and count in (1, 3):
         c, s = math.cos(math.radians(n[0])), math.sin(math.radians(n[0]))
         x, y = n[1:] if count == 3 else (0.0, 0.0)
@@ -148,6 +152,9 @@ def _flattened(
     """Corners, m, and for each the drawn command that begins there."""
     from svg.path import Arc, Close, Line, Move, parse_path
 
+    strange = _NO_COMMAND.search(data)
+    if strange is not None:
+        raise wrong(f"the path's data hold {shown(strange[0])}, which is no command", file=file, line=line)
     try:
         drawn = list(parse_path(data))
     except Exception as error:  # the parser raises whatever the text leads to
@@ -171,15 +178,20 @@ def _flattened(
         if isinstance(piece, Close) and abs(piece.end - piece.start) == 0:
             continue
         straight = isinstance(piece, Line | Close) or (isinstance(piece, Arc) and not piece.radius)
-        corners = [place(piece.start)] if straight else _curve(lambda t, p=piece: place(p.point(t)), tolerance)
+        corners = [place(piece.start)] if straight else _curve(piece, place, tolerance)
         points += corners
         commands += [number] * len(corners)
         number += 1
     return points, commands
 
 
-def _curve(place: Callable[[float], tuple[float, float]], tolerance: float) -> list[tuple[float, float]]:
+def _curve(
+    piece: Any, to_plane: Callable[[complex], tuple[float, float]], tolerance: float
+) -> list[tuple[float, float]]:
     """Points along a curve but its last, so close that chords keep within the tolerance."""
+
+    def place(t: float) -> tuple[float, float]:
+        return to_plane(piece.point(t))
 
     def split(t0: float, t1: float, depth: int) -> list[float]:
         a, b = np.array(place(t0)), np.array(place(t1))

@@ -11,7 +11,15 @@ from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator,
 from gw_exudyn.scenario.branches import BranchesVessel
 from gw_exudyn.scenario.centreline import CentrelineForm
 from gw_exudyn.scenario.fields import KIND_TAG, Choice, Faults, Form, Section, Table, Text, Whole, wrong
-from gw_exudyn.scenario.kinds import ANGLE, ARC_RADIUS, DRAWING_LENGTH, LEAD_LENGTH, POINT, VESSEL_DIAMETER, VESSEL_LENGTH
+from gw_exudyn.scenario.kinds import (
+    ANGLE,
+    ARC_RADIUS,
+    DRAWING_LENGTH,
+    LEAD_LENGTH,
+    POINT,
+    VESSEL_DIAMETER,
+    VESSEL_LENGTH,
+)
 from gw_exudyn.scenario.outline import (
     MOST_POINTS,
     Outline,
@@ -167,8 +175,7 @@ class PolygonForm(Section):
         default=None, validate_default=True, description="corners of the outline in order"
     )
     open_edges: Annotated[tuple[int, ...], Table(Whole(0, MOST_POINTS), 0, MOST_POINTS, "edge")] = Field(
-        default=(),
-        description="edges that are open ends: edge i goes from point i to point i + 1"
+        default=(), description="edges that are open ends: edge i goes from point i to point i + 1"
     )
 
     @field_validator("file", mode="after")
@@ -238,7 +245,9 @@ class VesselFile(Section):
 
     def resolve(self) -> NoReturn:
         """Not reached where a scenario is loaded."""
-        raise wrong("a vessel's file is read by load_scenario and scenario_from_dict only; load the scenario with these")
+        raise wrong(
+            "a vessel's file is read by load_scenario and scenario_from_dict only; load the scenario with these"
+        )
 
 
 def _tag(vessel: Any) -> str:

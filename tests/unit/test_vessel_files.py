@@ -87,7 +87,8 @@ def test_transforms_of_an_svg_are_applied_from_the_outside_in(vessel, around, at
 
 
 def test_a_view_box_elsewhere_moves_the_origin(vessel):
-    moved = vessel("lumen.svg", svg("M 10 100 h 32 v -60 h -4 v 56 h -28 z", view_box="10 20 120 80"), length="120 mm")
+    drawing = svg("M 10 100 h 32 v -60 h -4 v 56 h -28 z", view_box="10 20 120 80")
+    moved = vessel("lumen.svg", drawing, length="120 mm")
     same_lumen(moved, CORNER)
 
 
@@ -99,7 +100,7 @@ def test_a_view_box_elsewhere_moves_the_origin(vessel):
         # A parabola over a chord has two thirds of its rectangle.
         ("M 0 40 Q 30 -20 60 40 Z", 2 / 3 * 60 * 30),
         ("M 0 40 Q 15 10 30 40 T 60 40 V 70 H 0 Z", 60 * 30),
-        # The integral of y dx with x = 60 (3 t^2 - 2 t^3), y = 120 t (1 - t): 43200 times the integral of t^2 (1 - t)^2.
+        # The integral of y dx with x = 60 (3 t^2 - 2 t^3), y = 120 t (1 - t), which is 43200 t^2 (1 - t)^2 dt.
         ("M 0 40 C 0 0 60 0 60 40 Z", 43200 / 30),
         ("M 0 40 C 0 20 30 20 30 40 S 60 60 60 40 V 75 H 0 Z", 60 * 35),
     ],
@@ -131,7 +132,10 @@ def test_the_path_of_an_svg_with_several_is_named(vessel):
 
 
 def centreline(rows, head: str = "x [mm],y [mm],radius [mm]") -> str:
-    return "\n".join([head, *(",".join(f"{value:.9g}" if not isinstance(value, str) else value for value in row) for row in rows)])
+    def cell(value) -> str:
+        return value if isinstance(value, str) else f"{value:.9g}"
+
+    return "\n".join([head, *(",".join(map(cell, row)) for row in rows)])
 
 
 def test_a_straight_centre_line_is_a_channel(vessel):
