@@ -217,8 +217,7 @@ def united(branches: tuple[BranchSpec, ...]) -> UnitedLumen | Faulty:
         if spec.parent is not None:
             parent, at = courses[spec.parent], spec.at or 0.0
             if _AT_END < at < parent.length - _AT_END:
-                point, heading, _ = parent.at(at)
-                side = point, heading
+                side = parent.at(at)
         states = tuple(None if state is None else state == "open" for state in (spec.start, spec.end))
         parts.append(Branch(spec.name, courses[spec.name], _fillet(spec, by_name), (states[0], states[1]), side))
     for part in parts:

@@ -34,6 +34,9 @@ _STEP = 0.05
 _CORNER = math.radians(5)
 """Turn from which a corner into the lumen is one that a fillet rounds, and no facet of a curve."""
 
+_PAST_AXIS = 0.25
+"""How far past its parent's axis a branch begins, over the parent's radius."""
+
 _SAME_PLACE = 1e-6
 """Ends of branches closer than this, m, meet in one joint."""
 
@@ -45,14 +48,14 @@ class Branch:
     name : for messages. course : its centre line and radius. fillet : m, of corners into the lumen where it meets a
         branch before it, and of its own bends. ends_open : its beginning, its end; None where it depends on whether
         another branch joins there. side : for a branch that leaves in the middle of another: a point (2,) on that
-        one's axis and the axis' heading, rad; what lies beyond the axis is cut off.
+        one's axis, the axis' heading, rad, and the other's radius, m; what lies well beyond the axis is cut off.
     """
 
     name: str
     course: Course
     fillet: float
     ends_open: tuple[bool | None, bool | None]
-    side: tuple[Floats, float] | None = None
+    side: tuple[Floats, float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -120,16 +123,18 @@ def _area(branch: Branch) -> shapely.Polygon:
     pieces = [shapely.Polygon(quad) for quad in branch.course.quads()]
     if branch.side is None:
         return shapely.union_all(pieces, grid_size=GRID)
-    origin, axis = branch.side
+    origin, axis, parent_radius = branch.side
     point, heading, radius = branch.course.at(0.0)
-    # Both walls run back to the parent's axis, and end there.
-    back = radius / abs(math.tan(heading - axis)) + radius
+    # Both walls run back to the parent's axis and a little on, so that branches to either side overlap.
+    beyond = _PAST_AXIS * parent_radius
+    back = radius / abs(math.tan(heading - axis)) + beyond / abs(math.sin(heading - axis)) + radius
     along, across = np.array([math.cos(heading), math.sin(heading)]), np.diff(branch.course.cap(0), axis=0)[0] / 2
     root = shapely.Polygon(
         [point - across - back * along, point - across, point + across, point + across - back * along]
     )
     reach = 2 * (branch.course.length + back + 2 * float(branch.course.radius.max()))
     left = np.array([-math.sin(axis), math.cos(axis)]) * math.copysign(1.0, math.sin(heading - axis))
+    origin = origin - beyond * left
     forward = reach * np.array([math.cos(axis), math.sin(axis)])
     half = shapely.Polygon(
         [origin - forward, origin + forward, origin + forward + reach * left, origin - forward + reach * left]

@@ -146,6 +146,12 @@ def test_a_pair_of_branches_at_the_end_makes_a_carina():
     assert carina / MM == pytest.approx(np.array([[40 + 1.5 / math.sin(math.radians(60)), 0.0]]), abs=1e-3)
 
 
+def test_branches_to_both_sides_just_before_the_end_leave_no_slit():
+    sides = [side(s * 100, 5e-3, at=39.96e-3) | {"name": n} for s, n in ((1, "left"), (-1, "right"))]
+    points = outline_of(MAIN | {"diameter": 3e-3}, *sides).points
+    assert np.abs(turns(points)).max() < 121
+
+
 def test_parents_may_stand_after_their_children():
     assert len(outline_of(side(90, 4e-3), MAIN).open_edges) == 3
 
