@@ -147,9 +147,10 @@ def test_a_pair_of_branches_at_the_end_makes_a_carina():
 
 
 def test_branches_to_both_sides_just_before_the_end_leave_no_slit():
-    sides = [side(s * 100, 5e-3, at=39.96e-3) | {"name": n} for s, n in ((1, "left"), (-1, "right"))]
-    points = outline_of(MAIN | {"diameter": 3e-3}, *sides).points
-    assert np.abs(turns(points)).max() < 121
+    # Wider than their parent and just before its end: beyond the end they have only each other.
+    main = MAIN | {"points": [[0, 0], [0.0399, -0.0028]], "diameter": 3e-3}
+    left, right = side(95, 5e-3, at=0.039948), side(-104, 6e-3, at=0.039948) | {"name": "right"}
+    assert np.abs(turns(outline_of(main, left, right).points)).max() < 121
 
 
 def test_parents_may_stand_after_their_children():
