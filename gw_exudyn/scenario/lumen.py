@@ -194,7 +194,7 @@ def _filleted(
     webs = []
     width = min(2 * float(branch.course.radius.min()) for branch in branches)
     for radius, corners in wanted.items():
-        facets = arc_facets(math.pi / 2, radius, max(width, radius))
+        facets = arc_facets(math.pi / 2, radius, width)
         wide = lumen.buffer(radius, join_style="mitre", mitre_limit=20)
         closed = wide.buffer(-radius, join_style="round", quad_segs=facets)
         spots = shapely.MultiPoint(corners)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import math
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +18,7 @@ from gw_exudyn.model.outline import Outline, build_outline
 from gw_exudyn.model.walls import Tube, build_walls
 from gw_exudyn.scenario import load_scenario, scenario_from_dict
 from gw_exudyn.scenario.course import FACET_TOLERANCE
+from gw_exudyn.scenario.yaml_source import parse_yaml
 from gw_exudyn.storage import read_run, write_run
 
 MM = 1e-3
@@ -232,3 +235,10 @@ def test_a_run_that_was_stored_knows_its_branches(tmp_path):
     again = read_run(write_run(result, tmp_path / "run", command=["test"], figures=False))
     points = [[10e-3, 0], [26e-3, 10e-3], [60e-3, 20.5e-3], [0.5, 0.5]]
     assert list(again.scenario.vessel.branch_at(points)) == ["trunk", "left", "target", ""]
+
+
+def test_the_example_in_the_docs_is_good():
+    text = (Path(__file__).resolve().parents[2] / "docs" / "vessels.md").read_text(encoding="utf-8")
+    block = re.search(r"```yaml\n(.*?)```", text, re.DOTALL)[1]
+    found = scenario(vessel=parse_yaml(block, "vessels.md").data["vessel"]).vessel
+    assert found.branch_names == ("main", "side")
