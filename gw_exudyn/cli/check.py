@@ -25,19 +25,35 @@ if TYPE_CHECKING:
 )
 @click.argument("scenario", metavar="SCENARIO")
 @options.overrides
+@click.option(
+    "--draw",
+    "picture",
+    is_flag=False,
+    flag_value="",
+    metavar="[FILE]",
+    help="Draw vessel, open ends, corners, branches, catheter and wire into FILE (.png, .pdf, .svg); without FILE into "
+    "the current folder, named after the scenario.",
+)
 @options.as_json
-def command(scenario: str, overrides: tuple[str, ...], as_json: bool) -> int:
-    """Load, build the model, and tell of it."""
+def command(scenario: str, overrides: tuple[str, ...], picture: str | None, as_json: bool) -> int:
+    """Load, build the model, draw it if asked, and tell of it."""
     from gw_exudyn import model
     from gw_exudyn.scenario import load_scenario
 
     try:
         loaded = load_scenario(scenario, overrides)
-        described = model.build(loaded).describe()
+        built = model.build(loaded)
+        described = built.describe()
     except ScenarioError as error:
         if as_json:
             put_json({"valid": False, "problems": [asdict(problem) for problem in error.problems]})
         raise
+    if picture is not None:
+        from gw_exudyn.cli.draw import draw, picture_file
+
+        file = picture_file(picture, loaded.name)
+        draw(built, file)
+        tell(f"drawn: {file}")
     if as_json:
         put_json({"valid": True, "problems": [], "name": loaded.name, "model": described})
         return 0
@@ -67,6 +83,7 @@ def summary_rows(scenario: Scenario, described: dict[str, Any]) -> list[tuple[st
         ("bending stiffness", least if least == largest else f"{least} to {largest}"),
         ("segments", f"{wire.segments} of {shortest if shortest == longest else f'{shortest} to {longest}'}"),
         ("vessel", f"{scenario.vessel.kind}, {described['vessel.walls']} walls, {_corners(described)} into the lumen"),
+        *_out_of_plane(described),
         ("lumen at the exit", f"{given('vessel.width_at_exit', 'mm')}, {room} wider than the wire"),
         ("catheter", f"exit at ({place}) mm, bore {given('catheter.bore', 'mm')}, {play} wider than the wire"),
         ("friction", f"{scenario.contact.friction_coefficient:g}"),
@@ -84,6 +101,11 @@ def _drive(scenario: Scenario, described: dict[str, Any]) -> str:
         return f"force of up to {format_quantity(max(drive.force, key=abs), 'mN')} on the hub"
     furthest = format_quantity(float(f"{described['drive.furthest']:.4g}"), "mm")
     return f"{furthest} in" if drive.kind == "speed" else f"{furthest} of the tip's path, by the hub's speed"
+
+
+def _out_of_plane(described: dict[str, Any]) -> list[tuple[str, str]]:
+    share = described["vessel.out_of_plane"]
+    return [] if share is None else [("out of plane", f"at most {share:.3g} of the radius, projected")]
 
 
 def _corners(described: dict[str, Any]) -> str:

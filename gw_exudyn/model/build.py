@@ -89,6 +89,8 @@ class Model:
             "wire.mass": float(self.wire.mass.sum()),
             "vessel.walls": int(np.count_nonzero(~self.walls.tube)),
             "vessel.corners": corners_into(self.outline),
+            "vessel.branches": list(scenario.vessel.branch_names),
+            "vessel.out_of_plane": getattr(scenario.vessel, "out_of_plane", None),
             "vessel.width_at_exit": self.around.width,
             "catheter.bore": self.tube.bore,
             "contact.wall_stiffness": self.law.stiffness,

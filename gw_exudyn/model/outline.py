@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from gw_exudyn.scenario import ArcVessel, PolygonVessel, StraightVessel
+    from gw_exudyn.scenario import ArcVessel, BranchesVessel, PolygonVessel, StraightVessel
 
 Floats = NDArray[np.float64]
 
@@ -27,10 +27,13 @@ class Outline:
     open_edges: frozenset[int]
 
 
-def build_outline(vessel: StraightVessel | ArcVessel | PolygonVessel) -> Outline:
+def build_outline(vessel: StraightVessel | ArcVessel | BranchesVessel | PolygonVessel) -> Outline:
     """The outline of a vessel of a scenario, in the scenario's plane. The inlet of a channel is open."""
     if vessel.kind == "polygon":
         return _without_straight_corners(Outline(np.array(vessel.points), frozenset(vessel.open_edges)))
+    if vessel.kind == "branches":
+        lumen = vessel.lumen()
+        return _without_straight_corners(Outline(np.array(lumen.points), frozenset(lumen.open_edges)))
     if vessel.kind == "arc":
         centreline, headings = _arc_centreline(vessel)
     else:

@@ -9,6 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from gw_exudyn.scenario.branches import BranchesVessel
     from gw_exudyn.scenario.catalogue import CatalogueWire, catalogue_names, load_catalogue
     from gw_exudyn.scenario.drive import SpeedDrive
     from gw_exudyn.scenario.loading import load_scenario, scenario_from_dict
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 _HOME = {
     "ArcVessel": "vessel",
+    "BranchesVessel": "branches",
     "CatalogueWire": "catalogue",
     "CatheterSpec": "schema",
     "ContactSpec": "schema",
@@ -54,6 +56,7 @@ _HOME = {
 
 __all__ = [
     "ArcVessel",
+    "BranchesVessel",
     "CatalogueWire",
     "CatheterSpec",
     "ContactSpec",

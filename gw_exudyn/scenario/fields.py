@@ -242,9 +242,12 @@ class Choice(Kind):
 
     words: tuple[str, ...]
     later: tuple[str, ...] = ()
+    optional: bool = False
 
-    def read(self, value: Any) -> str:
+    def read(self, value: Any) -> str | None:
         """The word."""
+        if value is None and self.optional:
+            return None
         allowed = f"allowed: {', '.join(self.words)}"
         if isinstance(value, str) and value in self.words:
             return value
@@ -255,7 +258,8 @@ class Choice(Kind):
 
     def json(self) -> dict[str, Any]:
         """An enumeration."""
-        return {"enum": list(self.words)} if len(self.words) > 1 else {"const": self.words[0]}
+        words = [*self.words, None] if self.optional else list(self.words)
+        return {"enum": words} if len(words) > 1 else {"const": words[0]}
 
 
 @dataclass(frozen=True)

@@ -175,12 +175,14 @@ def test_numpy_numbers_are_numbers() -> None:
         ({"contact.regularisation_speed": 1}, ["contact.regularisation_speed: unknown key; allowed: "
                                                "friction_coefficient, wall_stiffness, "
                                                "wall_damping, tangential_stiffness, patches"]),
-        ({"vessel.kind": "branches"}, ["vessel.kind: 'branches' is not built yet; allowed: straight, arc, polygon"]),
+        ({"vessel": {"kind": "branches"}}, ["vessel.branches: is missing: the branches; for example branches: [{name: "
+                                            "main, points: [[0 mm, 0 mm], [40 mm, 0 mm]], diameter: 4 mm}]"]),
         ({"vessel.kind": "strait"}, ["vessel.kind: 'strait' is not known here; did you mean 'straight'? allowed: "
-                                     "straight, arc, polygon"]),
-        ({"vessel.kind": REMOVE}, ["vessel.kind: is missing: what the vessel is; allowed: straight, arc, polygon"]),
+                                     "straight, arc, branches, centreline, polygon, file"]),
+        ({"vessel.kind": REMOVE}, ["vessel.kind: is missing: what the vessel is; allowed: straight, arc, "
+                                   "branches, centreline, polygon, file"]),
         ({"vessel": 3}, ["vessel: 3 stands where a vessel is needed: lines of 'key: value', the first kind: straight "
-                         "| arc | polygon"]),
+                         "| arc | branches | centreline | polygon | file"]),
         ({"vessel.end": "closed"}, ["vessel.end: 'closed' is not known here; allowed: open, dead"]),
         ({"vessel.length": REMOVE}, ["vessel.length: is missing: length along x; for example length: 100 mm"]),
         ({"vessel": {"kind": "arc", "radius": "2 mm", "angle": "90 deg", "diameter": "4 mm"}},
