@@ -21,8 +21,8 @@ _OPEN = 0.05
 """What a segment may pass in one go where it meets nothing, over the wire's length; else it is the wire's radius."""
 
 _LIMIT = 0.75
-"""Largest move of a segment in one Newton step, in radii of the wire, or in what stands for it (`_passable`). With the signed
-gap it keeps corners on their side."""
+"""Largest move of a segment in one Newton step, in radii of the wire or in what stands for it (`_passable`). With the
+signed gap it keeps corners on their side."""
 
 _GUESS = 0.25
 """How far the first guess of a step may move a segment beyond the drive's travel, in radii."""
@@ -121,8 +121,8 @@ class Newton:
         self._multipliers = self._data.GetAECoordinates()
 
     def tangent(self, _mbs: Any, _t: float, _item: int, _q: Any, _q_t: Any, factor: float, _factor_t: float) -> Any:
-        """Share of contact and loads in the tangent at the place of the last residual. Exudyn wants minus the derivative of the
-        force.
+        """Share of contact and loads in the tangent at the place of the last residual. Exudyn wants minus the
+        derivative of the force.
 
         Position and velocity parts were joined with the ratio of the two factors, which the integrator fixes.
         """

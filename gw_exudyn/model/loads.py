@@ -49,9 +49,9 @@ class TipLoad:
     """Loads at the tip and what holds it, in the catheter's frame.
 
     dead : (2,), N, fixed in space. follower : (2,), N, along the wire and to its left. moment : N m. ramp : s.
-    held : (2,), N/m, along and across the catheter's axis, of what holds the tip's place; 0 where it is free. at : (2,),
-        m, the place that is held. clamp : N m/rad, of the half segment
-        between the last joint's stretch and a clamped tip; 0 where it may turn. rest : rad, its angle without load.
+    held : (2,), N/m, along and across the catheter's axis, of what holds the tip's place; 0 where it is free.
+    at : (2,), m, the place that is held. clamp : N m/rad, of the half segment between the last joint's stretch and a
+        clamped tip; 0 where it may turn. rest : rad, its angle without load.
     """
 
     dead: Floats
