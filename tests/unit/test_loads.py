@@ -113,8 +113,8 @@ def test_a_disc_is_shared_by_neighbours_without_a_jump():
         loads = loads_with(discs=[disc(x, -1.17e-3, -1.0)])
         loads.evaluate(placed(chain(WIRE, (0, 0), 0.0)))
         forces.append(loads.force[:, 1].sum())
-    # In the hand-over, 18 um to each side, one of the two sees its round end, further off by 0.14 nm.
-    assert forces == pytest.approx(np.full(41, forces[0]), rel=1e-4)
+    # In the hand-over, 18 um to each side, one of the two sees its round end, further off by up to 0.14 um of 10.
+    assert forces == pytest.approx(np.full(41, forces[0]), rel=5e-3)
 
 
 def test_loads_rise_over_their_ramp_and_a_nose_stops():

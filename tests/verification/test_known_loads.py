@@ -56,7 +56,7 @@ def books_close(result):
 
 @pytest.mark.parametrize("segments", [10, 40])
 def test_a_cantilever_under_a_small_tip_load(segments):
-    """delta = F L^3 / (3 EI) (1 + 1/(2 n^2)), the chain's own closed form: n joints at i L/n, the clamp twice as stiff."""
+    """delta = F L^3 / (3 EI) (1 + 1/(2 n^2)): the chain's own, its clamp twice as stiff as its joints."""
     force = 1e-4 * 3 * EI / LENGTH**2
     result = run(segments, tip={"force": [0.0, force], "ramp": 0.5}, solver=SHARP)
     expected = force * LENGTH**3 / (3 * EI) * (1 + 1 / (2 * segments**2))
@@ -147,13 +147,12 @@ def test_a_compressive_follower_never_makes_a_cantilever_buckle_at_rest():
 
 @pytest.mark.parametrize(("hold", "factor"), [("pinned", 2.0457), ("clamped", 4.0)])
 def test_a_column_pushed_against_its_held_tip_buckles_at_eulers_load(hold, factor):
-    """P_cr = factor pi^2 EI / L^2; at a shortening of 0.2 % the load has risen by some thousandths."""
-    content = beam(60, tip={"hold": hold}, wire={"imperfection": 0.04})
+    """P_cr = factor pi^2 EI / L^2; the imperfection, and the rise at a shortening of 0.2 %, make up to 0.002."""
+    content = beam(60, tip={"hold": hold}, wire={"imperfection": 0.01})
     phases = [{"speed": 0.2e-3, "duration": 1.0}, {"speed": 0.0, "duration": 1.0}]
     result = simulate(scenario_from_dict(content | {"drive": {"kind": "speed", "phases": phases}}))
     assert result.status.status is Status.COMPLETED
-    print(at_end(result, "push_force") / (factor * EULER))
-    assert at_end(result, "push_force") / (factor * EULER) == pytest.approx(1.0, abs=0.005)
+    assert at_end(result, "push_force") / (factor * EULER) == pytest.approx(1.0, abs=0.003)
     assert at_end(result, "tip_hold_force_x") == pytest.approx(at_end(result, "push_force"), rel=1e-4)
     assert books_close(result)
 
