@@ -155,6 +155,18 @@ _FURTHER_SCALARS = (
     Quantity(
         "catheter_force_normal", "N", "F_cn", "sum of the normal forces of all contacts with the catheter", TIME, "mN"
     ),
+    Quantity("drive_force", "N", "F_drive", "force of the drive on the hub, or on the wire without one", TIME, "mN"),
+    Quantity("drive_work", "J", "W_drive", "work of the drive since the start, on hub and wire", TIME, "uJ"),
+    Quantity("hub_kinetic_energy", "J", "E_hub", "kinetic energy of the force drive's hub", TIME, "uJ"),
+    Quantity("hub_damping_loss", "J", "D_hub", "energy lost to the hub's damper since the start", TIME, "uJ"),
+    Quantity(
+        "hub_numerical_loss",
+        "J",
+        "D_hnum",
+        "hub's energy lost to the time integration since the start",
+        TIME,
+        "uJ",
+    ),
     Quantity("drive_speed", "m s-1", "v", "speed of the drive, positive into the vessel", TIME, "mm/s"),
     Quantity(
         "drive_position",

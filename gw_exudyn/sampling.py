@@ -45,7 +45,7 @@ def _place(stepper: Stepper) -> dict[str, Any]:
         "node_y": nodes[:, 1],
         "joint_angle": relative_angles(motion.q[:, 2]),
         "joint_torque": -joint_moments(wire, motion),
-        "drive_speed": stepper.drive.speed_at(stepper.time),
+        "drive_speed": stepper.hub.speed,
         "drive_position": stepper.instant.travel - wire.length,
     }
 
@@ -155,6 +155,7 @@ def _forces(stepper: Stepper, contacts: Mapping[str, Floats]) -> dict[str, Any]:
     tip = force[contacts["at_tip"].astype(bool)].sum(axis=0)
     return {
         "push_force": stepper.instant.push,
+        "drive_force": stepper.hub.force,
         "tip_force": float(np.hypot(*tip)),
         "wall_force_x": wall[0],
         "wall_force_y": wall[1],
@@ -201,7 +202,20 @@ def _energies(stepper: Stepper) -> dict[str, float]:
         "friction_loss": energies.friction_loss,
         "damping_loss": energies.damping_loss,
         "numerical_loss": energies.numerical_loss,
-        "energy_error": energies.error,
+        **_hub_energies(stepper),
+        "energy_error": stepper.energy_error,
+    }
+
+
+def _hub_energies(stepper: Stepper) -> dict[str, float]:
+    """Where the hub is placed, the drive works on the wire alone."""
+    hub = stepper.hub_energies
+    free = stepper.system.hub.moves_freely
+    return {
+        "drive_work": hub.work if free else stepper.energies.insertion_work,
+        "hub_kinetic_energy": hub.kinetic,
+        "hub_damping_loss": hub.damping_loss,
+        "hub_numerical_loss": hub.numerical_loss,
     }
 
 

@@ -73,9 +73,9 @@ def _left(stepper: Stepper) -> str | None:
 def energy_report(stepper: Stepper) -> StatusReport | None:
     """ENERGY_OPEN where the energies of the run so far do not add up, else None."""
     energies = stepper.energies
-    if energies.largest_work < ENERGY_FLOOR or abs(energies.error) <= OPEN_ENERGY * energies.largest_work:
+    if energies.largest_work < ENERGY_FLOOR or abs(stepper.energy_error) <= OPEN_ENERGY * energies.largest_work:
         return None
-    share = 100 * abs(energies.error) / energies.largest_work
+    share = 100 * abs(stepper.energy_error) / energies.largest_work
     return StatusReport(Status.ENERGY_OPEN, stepper.time, detail=f"{share:.3g} % of {energies.largest_work:.3g} J")
 
 

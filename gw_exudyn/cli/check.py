@@ -69,7 +69,7 @@ def summary_rows(scenario: Scenario, described: dict[str, Any]) -> list[tuple[st
         ("catheter", f"exit at ({place}) mm, {_bore(scenario)}"),
         ("friction", f"{scenario.contact.friction_coefficient:g}"),
         ("wall stiffness", f"{given('contact.wall_stiffness', 'N/m')}, {stiffness}"),
-        ("drive", f"{given('drive.furthest', 'mm')} in, {given('drive.duration', 's')} in all"),
+        ("drive", f"{_drive(scenario, described)}, {given('drive.duration', 's')} in all"),
         ("solver steps", f"about {described['solver.steps']} of {format_quantity(scenario.solver.step, 'ms')}"),
     ]
 
@@ -97,6 +97,16 @@ def _bore(scenario: Scenario) -> str:
         return "no tube: only the drive holds the wire"
     inner, play = (format_quantity(float(f"{width:.4g}"), "mm") for width in (bore, bore - scenario.wire.diameter))
     return f"bore {inner}, {play} wider than the wire"
+
+
+def _drive(scenario: Scenario, described: dict[str, Any]) -> str:
+    from gw_exudyn.scenario.units import format_quantity
+
+    drive = scenario.drive
+    if drive.kind == "force":
+        return f"force of up to {format_quantity(max(drive.force, key=abs), 'mN')} on the hub"
+    furthest = format_quantity(float(f"{described['drive.furthest']:.4g}"), "mm")
+    return f"{furthest} in" if drive.kind == "speed" else f"{furthest} of the tip's path, by the hub's speed"
 
 
 def _corners(described: dict[str, Any]) -> str:

@@ -12,6 +12,7 @@ from gw_exudyn.engine.assembly import HUB_COORDINATES, System
 from gw_exudyn.engine.library import exudyn
 from gw_exudyn.engine.settings import acceleration_factor, velocity_factor
 from gw_exudyn.model.contact import Contact
+from gw_exudyn.model.kernel import Motion
 from gw_exudyn.model.loads import Loads
 from gw_exudyn.model.stability import negative_pivots
 
@@ -40,8 +41,14 @@ _SLIGHT = 1e-4
 """Share of the inertia in a nominal step that counts as stiffness when stability is judged: enough for a wire that
 nothing holds yet, next to nothing beside a load."""
 
+_SURPRISE = 0.5
+"""By how much the way that a hub goes at its speed in a step may change over the step, in radii."""
+
 _HELD_ITERATIONS = 1
 """Iterations in which the tangent keeps the stiffness of the contacts at the step's start."""
+
+PIECE = 1 / 3
+"""Share of the contact's reach that the drive may travel in one step: segments may move by some more."""
 
 _ACCEPT, _REFUSE = [0.0, -1.0], [1e9, -1.0]
 
@@ -58,11 +65,12 @@ class Newton:
         self._triplets = np.column_stack([rows, columns, np.zeros(9 * count)]).astype(float)
         self._radius = _passable(contact, loads)
         self._force, self._tangent = np.zeros((count, 3)), np.zeros(9 * count)
-        self._turning: Floats = np.zeros(count)
+        self._reaction: Floats = np.zeros(2 * count)
         self._step, self._travel = 1.0, 0.0
         self._end = 0.0
         self._last: Floats = np.zeros(0)
         self._last_move = 0.0
+        self._before = Motion(count)
         self.reset_counts()
 
     def reset_counts(self) -> None:
@@ -186,11 +194,11 @@ class Newton:
         change = q - self._last
         self._last_move = _largest_move(change)
         share = min(1.0, _LIMIT * self._radius / max(self._last_move, 1e-30))
-        before = self._contact.gaps()
+        self._before.take(self._contact.motion)
         for _ in range(2):
             back = (share - 1) * change
             self._evaluate(q + back, q_t + velocity_factor(self._step) * back, predicted)
-            free = self._contact.share_to_touch(before)
+            free = self._contact.share_to_touch(self._before)
             if free >= 1:
                 break
             share *= free
@@ -208,20 +216,27 @@ class Newton:
         if self._loads.present:
             self._force += self._loads.force
             self._tangent += self._loads.tangent.reshape(-1)
-        motion, wire = self._contact.motion, self._contact.wire
-        on_proximal_end = -np.asarray(self._data.GetAECoordinates())[HUB_COORDINATES:].reshape(-1, 2)
-        along = motion.c * on_proximal_end[:, 0] + motion.s * on_proximal_end[:, 1]
-        along[:-1] += motion.c[:-1] * on_proximal_end[1:, 0] + motion.s[:-1] * on_proximal_end[1:, 1]
-        self._turning = wire.lengths / 2 * along
-        if self._last_move > _NEAR * self._radius:
-            np.minimum(along, 0.0, out=along)
-        self._tangent[8::9] += wire.lengths / 2 * along
+        self._reaction = np.asarray(self._data.GetAECoordinates())[self._system.hub.constraints :]
+        far = self._last_move > _NEAR * self._radius
+        self._contact.add_turning(self._tangent, self._reaction, stiffening=far)
 
     def _after_newton(self, _mbs: Any, _time: float) -> list[float]:
         """Refuse what converged to the wrong thing; the step is then cut."""
-        wrong = self._jumped() or self._tunnelled() or self._unstable()
+        wrong = self._ran_away() or self._jumped() or self._tunnelled() or self._unstable()
         self.refused += wrong
         return _REFUSE if wrong else _ACCEPT
+
+    def _ran_away(self) -> bool:
+        """A hub that moves freely went further than contact looks ahead, out of its range, or much further or less far
+        than its speed foretold: the step is too long for it. Its travel is known from here on."""
+        if not self._system.hub.moves_freely:
+            return False
+        there, foretold = float(self._data.GetODE2Coordinates()[0]), self._travel
+        self._travel = there - float(self._data.GetODE2Coordinates(exudyn().ConfigurationType.StartOfStep)[0])
+        surprise = abs(float(self._data.GetODE2Coordinates_t()[0]) * self._step - foretold)
+        (back, far), contact = self._system.range, self._contact
+        far_off = surprise > _SURPRISE * self._radius or abs(self._travel) > contact.reach * PIECE
+        return far_off or not back < there <= far
 
     def _jumped(self) -> bool:
         """A node moved much further than the drive: the step skipped a snap-through, whose branch only short steps
@@ -240,8 +255,9 @@ class Newton:
         stiffness = wire.joint_stiffness + velocity_factor(self._step) * wire.joint_damping
         if not (self._loads.present or self._system.base_moves):
             return self._contact.is_unstable(stiffness)
-        blocks = -self._contact.tangent.reshape(-1, 3, 3) - self._loads.tangent
-        blocks[:, 2, 2] -= self._turning
+        tangent = self._contact.tangent + self._loads.tangent.reshape(-1)
+        self._contact.add_turning(tangent, self._reaction, stiffening=False)
+        blocks = -tangent.reshape(-1, 3, 3)
         blocks[:, (0, 1, 2), (0, 1, 2)] += self._inertia * np.column_stack([wire.mass, wire.mass, wire.inertia])
         negative = negative_pivots(wire, self._contact.motion, blocks, stiffness, base_moves=self._system.base_moves)
         # Without a potential there is no minimum; what can be lost is divergence, where the determinant changes its

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from gw_exudyn.errors import Problem, ScenarioError
 from gw_exudyn.model.discs import Disc
-from gw_exudyn.model.drive import Drive
+from gw_exudyn.model.drive import AnyDrive, Drive, Force
 from gw_exudyn.model.law import JUST_AHEAD
 from gw_exudyn.model.outline import Outline
 from gw_exudyn.model.walls import Tube, vessel_polylines
@@ -24,7 +24,7 @@ _STEP = 1e-6
 """By how much, m, a wall may stand inside the bore at the exit: far less than the wire notices."""
 
 
-def check(scenario: Scenario, outline: Outline, tube: Tube, drive: Drive, discs: Sequence[Disc] = ()) -> None:
+def check(scenario: Scenario, outline: Outline, tube: Tube, drive: AnyDrive, discs: Sequence[Disc] = ()) -> None:
     """Raise ScenarioError with everything that keeps this wire from starting in this vessel.
 
     outline, tube and discs in the catheter's frame.
@@ -32,7 +32,7 @@ def check(scenario: Scenario, outline: Outline, tube: Tube, drive: Drive, discs:
     problems = _bore(scenario)
     if len(outline.points):
         problems += _exit(scenario, outline, tube) or _start(scenario, outline, tube)
-    problems += _travel(scenario, drive) + _discs(scenario, drive, discs)
+    problems += _travel(scenario, drive) + _discs(scenario, discs)
     if problems:
         raise ScenarioError(problems)
 
@@ -78,14 +78,17 @@ def _exit(scenario: Scenario, outline: Outline, tube: Tube) -> list[Problem]:
     return [scenario.problem("catheter.bore", text)]
 
 
-def _travel(scenario: Scenario, drive: Drive) -> list[Problem]:
+def _travel(scenario: Scenario, drive: AnyDrive) -> list[Problem]:
     """The proximal end stays behind the exit: the drive holds it on the catheter's axis."""
-    furthest = drive.extremes()[1]
-    if scenario.catheter.bore is None or furthest <= scenario.wire.length * (1 + 1e-12):
+    if scenario.catheter.bore is None:
         return []
-    if drive.position_at(0.0) > scenario.wire.length:
-        text = f"{_mm(drive.position_at(0.0))} of a wire of {_mm(scenario.wire.length)} cannot be inserted at the start"
+    start, length = scenario.drive.start, scenario.wire.length
+    if start > length:
+        text = f"{_mm(start)} of a wire of {_mm(length)} cannot be inserted at the start"
         return [scenario.problem("drive.start", f"{text}; start with less, or take a longer wire (wire.length)")]
+    furthest = travel_wanted(scenario, drive)
+    if furthest is None or furthest <= length * (1 + 1e-12):
+        return []
     text = (
         f"pushes {_mm(furthest)} of a wire of {_mm(scenario.wire.length)}: its end would leave the catheter; "
         "push less far, or take a longer wire (wire.length)"
@@ -109,9 +112,9 @@ def _start(scenario: Scenario, outline: Outline, tube: Tube) -> list[Problem]:
     return []
 
 
-def _discs(scenario: Scenario, drive: Drive, discs: Sequence[Disc]) -> list[Problem]:
+def _discs(scenario: Scenario, discs: Sequence[Disc]) -> list[Problem]:
     """Each disc leaves room for the straight wire at the start."""
-    tip, radius = drive.position_at(0.0), scenario.wire.diameter / 2
+    tip, radius = scenario.drive.start, scenario.wire.diameter / 2
     problems = []
     for number, disc in enumerate(discs):
         x, y = disc.at
@@ -147,6 +150,14 @@ def first_within(points: Floats, closed: bool, radius: float) -> float:
         if furthest > 0:
             found = min(found, max(nearest, 0.0))
     return float(found)
+
+
+def travel_wanted(scenario: Scenario, drive: AnyDrive) -> float | None:
+    """Furthest travel, m, of the proximal end, or of the tip where that is what is driven, with the length inserted at
+    the start; None for a force, of which the run will tell."""
+    if isinstance(drive, Force):
+        return None
+    return drive.extremes()[1] if isinstance(drive, Drive) else drive.course.area_to(scenario.drive.duration)
 
 
 def contains(polygon: Floats, point: Floats) -> bool:

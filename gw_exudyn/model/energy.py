@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gw_exudyn.model.contact import Contact
-from gw_exudyn.model.kernel import Motion, Pairs
+from gw_exudyn.model.kernel import Motion
 from gw_exudyn.model.loads import LoadsInstant
 from gw_exudyn.model.wire import Wire
 
@@ -94,41 +94,26 @@ def joint_moments(wire: Wire, motion: Motion) -> Floats:
     return moments
 
 
-@dataclass(frozen=True)
-class WallStart:
-    """Gaps (m) and stored energies (J) of the pairs at the start of a step, in the order of the pair lists."""
-
-    node_gap: Floats
-    corner_gap: Floats
-    energy: float
-
-
-def stored_in_walls(contact: Contact) -> float:
-    """J, in the normal and tangential springs of all pairs, at the last `evaluate`."""
-    return float(contact.nodes.energy.sum() + contact.corners.energy.sum())
-
-
-def wall_start(contact: Contact) -> WallStart:
-    """At the start of a step, right after the pairs were found and evaluated there."""
-    return WallStart(contact.nodes.gap.copy(), contact.corners.gap.copy(), stored_in_walls(contact))
-
-
 def advanced(
     before: Energies,
     contact: Contact,
-    start: WallStart,
+    wall_before: float,
     old: Snapshot,
     new: Snapshot,
     acceleration: Floats,
     step: float,
 ) -> Energies:
-    """The energies after a step. `contact` is evaluated at its end; acceleration : (n, 3) at its end; step : s."""
+    """The energies after a step. `contact` is evaluated at its end; acceleration : (n, 3) at its end; step : s.
+
+    wall_before : J, in the springs of the walls at its start.
+    """
     wire = contact.wire
     moved, travelled = new.q - old.q, new.travel - old.travel
     turned = relative_angles(moved[:, 2])
     bend = relative_angles(new.q[:, 2]) - wire.rest_angle
-    friction, wall_damping = _wall_losses(contact, start)
-    wall, wall_before = stored_in_walls(contact) + new.loads.stored, start.energy + old.loads.stored
+    walls = contact.summary()
+    friction, wall_damping = walls.friction, walls.damping
+    wall, wall_before = walls.energy + new.loads.stored, wall_before + old.loads.stored
     inertia = np.column_stack([wire.mass, wire.mass, wire.inertia]) * acceleration
     resisted = wire.joint_damping * relative_angles(new.v[:, 2])
     damping = float(wire.joint_damping @ turned**2) / step
@@ -160,28 +145,6 @@ def advanced(
         ),
         load_work=before.load_work + load_work,
     )
-
-
-def _wall_losses(contact: Contact, start: WallStart) -> tuple[float, float]:
-    """(friction loss, wall damping loss) over the step, J, from the pairs.
-
-    Sliding is the slip that the tangential spring did not take up; the force opposes it, so the loss is never negative.
-    """
-    law = contact.law
-    friction = damping = 0.0
-    for pairs, gap in ((contact.nodes, start.node_gap), (contact.corners, start.corner_gap)):
-        slid = pairs.slip - (pairs.elastic - pairs.start)
-        friction -= float((pairs.weight * pairs.tangential * slid)[pairs.normal > 0].sum())
-        static = _static_force(pairs, law.toe, law.stiffness)
-        damping += float((pairs.weight * (static - pairs.normal) * (pairs.gap - gap)).sum())
-    return friction, damping
-
-
-def _static_force(pairs: Pairs, toe: float, stiffness: float) -> Floats:
-    """(p,), N: the normal force without its damper."""
-    u = np.clip(toe - pairs.gap, 0.0, 2 * toe)
-    force: Floats = stiffness * (u**2 / (4 * toe) + np.maximum(-pairs.gap - toe, 0.0))
-    return force
 
 
 def _finite_turns(wire: Wire, old: Snapshot, new: Snapshot, needed: Floats) -> float:

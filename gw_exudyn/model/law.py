@@ -98,7 +98,7 @@ def estimated_force(scenario: Scenario, around: Surroundings) -> float:
     """
     wire, bore = scenario.wire, bore_or_more(scenario)
     width = max(around.width, 2 * wire.diameter)
-    stiffness = mean_stiffness(wire.bending_stiffness, 5 * width)
+    stiffness = mean_stiffness(wire.effective_stiffness, 5 * width)
     bend = stiffness / (2 * width**2)
     head_on = 0.0 if math.isinf(around.ahead) else 20.2 * stiffness / (around.ahead + 10 * bore) ** 2
     curvature = _rest_curvature(wire)

@@ -13,9 +13,11 @@ if TYPE_CHECKING:
     from gw_exudyn.scenario.drive import SpeedDrive
     from gw_exudyn.scenario.loading import load_scenario, scenario_from_dict
     from gw_exudyn.scenario.loads import DiscSpec, NoseSpec, TipSpec
+    from gw_exudyn.scenario.other_drives import ForceDrive, TipSpeedDrive
     from gw_exudyn.scenario.schema import CatheterSpec, ContactSpec, OutputSpec, Scenario, SolverSpec, json_schema
     from gw_exudyn.scenario.shipped import list_shipped, resolve, shipped_folder
     from gw_exudyn.scenario.stiffness import StiffnessPiece
+    from gw_exudyn.scenario.stop import StopSpec, TargetSpec
     from gw_exudyn.scenario.units import format_quantity, parse_quantity, parse_unit
     from gw_exudyn.scenario.vessel import ArcVessel, NoVessel, PolygonVessel, StraightVessel
     from gw_exudyn.scenario.wire import TipShape, WireSpec
@@ -26,6 +28,7 @@ _HOME = {
     "CatheterSpec": "schema",
     "ContactSpec": "schema",
     "DiscSpec": "loads",
+    "ForceDrive": "other_drives",
     "NoVessel": "vessel",
     "NoseSpec": "loads",
     "OutputSpec": "schema",
@@ -34,7 +37,10 @@ _HOME = {
     "SolverSpec": "schema",
     "SpeedDrive": "drive",
     "StiffnessPiece": "stiffness",
+    "StopSpec": "stop",
     "StraightVessel": "vessel",
+    "TargetSpec": "stop",
+    "TipSpeedDrive": "other_drives",
     "TipShape": "wire",
     "TipSpec": "loads",
     "WireSpec": "wire",
@@ -57,6 +63,7 @@ __all__ = [
     "CatheterSpec",
     "ContactSpec",
     "DiscSpec",
+    "ForceDrive",
     "NoVessel",
     "NoseSpec",
     "OutputSpec",
@@ -65,9 +72,12 @@ __all__ = [
     "SolverSpec",
     "SpeedDrive",
     "StiffnessPiece",
+    "StopSpec",
     "StraightVessel",
+    "TargetSpec",
     "TipShape",
     "TipSpec",
+    "TipSpeedDrive",
     "WireSpec",
     "catalogue_names",
     "format_quantity",

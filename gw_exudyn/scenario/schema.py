@@ -16,6 +16,7 @@ from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 from gw_exudyn.errors import Problem
 from gw_exudyn.scenario.drive import Drive
 from gw_exudyn.scenario.fields import Faults, Section, Text, wrong
+from gw_exudyn.scenario.friction import FrictionPatch
 from gw_exudyn.scenario.kinds import (
     ANGLE,
     BORE,
@@ -32,6 +33,7 @@ from gw_exudyn.scenario.kinds import (
 )
 from gw_exudyn.scenario.loads import DiscSpec, NoseSpec, TipSpec
 from gw_exudyn.scenario.problems import place_of
+from gw_exudyn.scenario.stop import StopSpec
 from gw_exudyn.scenario.vessel import Vessel
 from gw_exudyn.scenario.wire import WireSpec
 from gw_exudyn.scenario.words import shown
@@ -71,7 +73,9 @@ class CatheterSpec(Section):
 class ContactSpec(Section):
     """Contact of the wire with walls.
 
-    friction_coefficient : Coulomb. wall_stiffness : N/m, per contact; None is chosen by the model. wall_damping : N
+    friction_coefficient : Coulomb, of all walls but the patches'; the wire's own `friction` multiplies it. patches :
+        walls of the vessel with a friction coefficient of their own.
+    wall_stiffness : N/m, per contact; None is chosen by the model. wall_damping : N
         s/m, at a penetration of 2 % of the wire's radius; None is chosen. tangential_stiffness : N/m, while sticking;
         None is the wall stiffness.
     """
@@ -89,6 +93,9 @@ class ContactSpec(Section):
     )
     tangential_stiffness: Annotated[float | None, WALL_STIFFNESS] = Field(
         default=None, description="tangential stiffness while the wire sticks; auto is the wall stiffness"
+    )
+    patches: tuple[FrictionPatch, ...] = Field(
+        default=(), max_length=10_000, description="walls of the vessel whose friction differs; the last one counts"
     )
 
 
@@ -148,6 +155,7 @@ class Scenario(Section):
         default=(), description="fixed discs on which the wire lies", examples=["[{at: [20 mm, -2 mm], radius: 1 mm}]"]
     )
     nose: NoseSpec | None = Field(default=None, description="a moving disc that presses on the wire")
+    stop: StopSpec = Field(default=StopSpec(), description="what ends the run before the drive does")
     solver: SolverSpec = Field(default=SolverSpec(), description="steps of the solver")
     output: OutputSpec = Field(default=OutputSpec(), validate_default=True, description="what is kept")
 
@@ -171,6 +179,17 @@ class Scenario(Section):
             faults.raise_if_any()
         return catheter
 
+    @field_validator("tip", mode="after")
+    @classmethod
+    def _free_to_be_driven(cls, tip: TipSpec, info: ValidationInfo) -> TipSpec:
+        drive = info.data.get("drive")
+        if drive is not None and drive.kind == "tip_speed" and tip.hold != "free" and tip.slides != "along":
+            faults = Faults()
+            text = f"a tip that is {tip.hold} here cannot have the speed that a drive of kind tip_speed wants; "
+            faults.add(("hold",), f"{text}let it be free or slide along, or take a drive of kind speed or force")
+            faults.raise_if_any()
+        return tip
+
     @field_validator("supports", mode="before")
     @classmethod
     def _not_too_many_supports(cls, supports: Any) -> Any:
@@ -178,7 +197,7 @@ class Scenario(Section):
             raise wrong(f"has {len(supports)} items; at most {MOST_SUPPORTS} are allowed")
         return () if supports is None else supports
 
-    @field_validator("contact", "tip", "solver", "output", mode="before")
+    @field_validator("contact", "tip", "stop", "solver", "output", mode="before")
     @classmethod
     def _empty_is_default(cls, value: Any) -> Any:
         return {} if value is None else value  # a section whose lines are all commented out
