@@ -29,9 +29,16 @@ def _section(section: Section, above: str) -> Iterator[tuple[str, str]]:
             yield from _listed(path, [_piece_text(piece) for piece in value])
         elif name == "drive":
             yield f"{path}.kind", value.kind
+            yield f"{path}.start", format_quantity(value.start, "mm")
+            yield f"{path}.hold", value.hold
             yield from _listed(f"{path}.table", _drive_texts(value))
         elif name == "points":
             yield from _listed(path, [_text(point, Row(("x", "y"), (COORDINATE, COORDINATE))) for point in value])
+        elif name == "supports":
+            for i, support in enumerate(value):
+                yield from _section(support, f"{path}.{i}.")
+        elif name == "bore" and value == 0.0:
+            yield path, "sleeve"
         elif isinstance(value, Section):
             yield from _section(value, f"{path}.")
         elif value is not None or (isinstance(kind, Quantity) and kind.auto):

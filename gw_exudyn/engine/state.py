@@ -17,7 +17,7 @@ from gw_exudyn.model.energy import Energies
 Floats = NDArray[np.float64]
 
 _MAGIC = b"GWEX"
-_VERSION = 1
+_VERSION = 2
 
 
 @dataclass(frozen=True)

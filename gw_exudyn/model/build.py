@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,7 +12,16 @@ from gw_exudyn.model.checks import check
 from gw_exudyn.model.contact import ContactLaw
 from gw_exudyn.model.drive import Drive, build_drive
 from gw_exudyn.model.frame import Frame
-from gw_exudyn.model.law import SINKING, Surroundings, contact_law, law_warnings, surroundings, value_or
+from gw_exudyn.model.law import (
+    SINKING,
+    Surroundings,
+    bore_or_more,
+    contact_law,
+    law_warnings,
+    surroundings,
+    value_or,
+)
+from gw_exudyn.model.loads import LoadSet, build_loads
 from gw_exudyn.model.outline import Outline, build_outline
 from gw_exudyn.model.walls import Tube, Walls, build_walls, corners_into, tube_polylines, vessel_polylines
 from gw_exudyn.model.wire import DEFAULT_IMPERFECTION, Wire, build_wire
@@ -38,6 +47,7 @@ class Model:
     drive: Drive
     outline: Outline
     tube: Tube
+    loads: LoadSet
     around: Surroundings
     warnings: tuple[str, ...]
 
@@ -50,6 +60,8 @@ class Model:
 
     def catheter_outline(self) -> list[Floats]:
         """The catheter's walls for drawing, in the scenario's plane: (2, 2) polylines, m, as long as the wire."""
+        if self.scenario.catheter.bore is None:
+            return []
         drawn = Tube(self.tube.bore, self.wire.length)
         return [self.frame.points_out(points) for points in tube_polylines(drawn)]
 
@@ -69,7 +81,7 @@ class Model:
             "vessel.walls": int(np.count_nonzero(~self.walls.tube)),
             "vessel.corners": corners_into(self.outline),
             "vessel.width_at_exit": self.around.width,
-            "catheter.bore": self.tube.bore,
+            "catheter.bore": scenario.catheter.bore,
             "contact.wall_stiffness": self.law.stiffness,
             "contact.wall_damping": self.law.damping * SINKING * self.wire.radius,
             "contact.tangential_stiffness": self.law.tangential_stiffness,
@@ -84,13 +96,14 @@ class Model:
 def build(scenario: Scenario) -> Model:
     """The model of a scenario. Raises ScenarioError for what cannot start (see checks)."""
     frame = Frame(scenario.catheter.exit, scenario.catheter.direction)
-    wire, drive = build_wire(scenario.wire), build_drive(scenario.drive)
+    wire, drive = _held(build_wire(scenario.wire), scenario.drive.hold), build_drive(scenario.drive)
     plane = build_outline(scenario.vessel)
     outline = Outline(frame.points_in(plane.points), plane.open_edges)
-    pulled_back = -drive.extremes()[0]
-    tube = Tube(scenario.catheter.bore, 2 * wire.length + pulled_back)
-    check(scenario, outline, tube, drive)
-    around = surroundings(outline)
+    pulled_back, bore = max(0.0, -drive.extremes()[0]), scenario.catheter.bore
+    tube = Tube(bore or scenario.wire.diameter, 2 * wire.length + pulled_back, walled=bool(bore))
+    loads = build_loads(scenario, wire, frame)
+    check(scenario, outline, tube, drive, loads.discs)
+    around = surroundings(outline, bore_or_more(scenario))
     law = contact_law(scenario, around)
     contact = scenario.contact
     walls = build_walls(
@@ -102,7 +115,16 @@ def build(scenario: Scenario) -> Model:
         seam_reach=6 * wire.radius,
     )
     warnings = (*law_warnings(scenario, around), *_too_coarse(scenario, wire))
-    return Model(scenario, frame, wire, walls, law, drive, outline, tube, around, warnings)
+    return Model(scenario, frame, wire, walls, law, drive, outline, tube, loads, around, warnings)
+
+
+def _held(wire: Wire, hold: str) -> Wire:
+    """The wire as the drive holds it: without the first joint's spring where its end may turn."""
+    if hold == "clamped":
+        return wire
+    stiffness, damping, rest = wire.joint_stiffness.copy(), wire.joint_damping.copy(), wire.rest_angle.copy()
+    stiffness[0] = damping[0] = rest[0] = 0.0
+    return replace(wire, joint_stiffness=stiffness, joint_damping=damping, rest_angle=rest)
 
 
 def _too_coarse(scenario: Scenario, wire: Wire) -> list[str]:

@@ -208,6 +208,10 @@ class Contact:
         """
         return self._kernel.unstable(self.motion, self.nodes, self.corners, joint_stiffness) > 0
 
+    def rubs(self) -> bool:
+        """A contact with friction carries force at the last `evaluate`."""
+        return any(bool(pairs.tangential.any()) for pairs in (self.nodes, self.corners))
+
     def crossing(self) -> tuple[int, int] | None:
         """(body, wall) where the wire's axis crosses a wall of the vessel or the catheter now, or None."""
         return self._kernel.crossing(self.motion, self._first_in_vessel())

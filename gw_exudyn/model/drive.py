@@ -19,7 +19,7 @@ class Drive:
     """A prescribed speed along the catheter's axis, positive into the vessel: a table until somebody takes over.
 
     time : (k,), s, rising, two equal times make a step. speed : (k,), m/s, linear in between, held after the end.
-    travelled : (k,), m, the integral of the speed up to each time.
+    travelled : (k,), m, the length inserted at the start and the integral of the speed up to each time.
     taken_over : None, or (time, position, speed) from which on the speed comes from outside and is constant.
     """
 
@@ -29,7 +29,7 @@ class Drive:
     taken_over: tuple[float, float, float] | None = None
 
     def position_at(self, time: float) -> float:
-        """Travel since the start, m, at a time, s."""
+        """Length inserted, m, at a time, s."""
         if self.taken_over is not None and time >= self.taken_over[0]:
             since, position, speed = self.taken_over
             return position + speed * (time - since)
@@ -52,14 +52,14 @@ class Drive:
         return float(np.abs(speeds).max())
 
     def extremes(self) -> tuple[float, float]:
-        """Least and largest travel up to the end of the table, m; a turning point inside a ramp is found too."""
+        """Least and largest length inserted up to the end of the table, m; a turning point inside a ramp is found too."""
         times = [float(t) for t in self.time]
         for i in range(len(times) - 1):
             before, after = float(self.speed[i]), float(self.speed[i + 1])
             if before * after < 0 and times[i + 1] > times[i]:
                 times.append(times[i] + (times[i + 1] - times[i]) * before / (before - after))
         travels = [self.position_at(t) for t in times]
-        return min(0.0, *travels), max(0.0, *travels)
+        return min(travels), max(travels)
 
     def taken_over_at(self, time: float, speed: float) -> Drive:
         """The constant `speed` from `time` on, without a jump in travel.
@@ -83,4 +83,4 @@ def build_drive(spec: SpeedDrive) -> Drive:
     """The drive of a scenario."""
     time, speed = np.array(spec.time), np.array(spec.speed)
     steps = np.diff(time) * (speed[1:] + speed[:-1]) / 2
-    return Drive(time, speed, np.concatenate([[0.0], np.cumsum(steps)]))
+    return Drive(time, speed, spec.start + np.concatenate([[0.0], np.cumsum(steps)]))

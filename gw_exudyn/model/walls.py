@@ -70,10 +70,14 @@ class _Polyline:
 
 @dataclass(frozen=True)
 class Tube:
-    """The catheter in its own frame: the axis along +x, the exit at the origin. bore, length : m."""
+    """The catheter in its own frame: the axis along +x, the exit at the origin. bore, length : m.
+
+    walled : it has walls to touch; a sleeve and a catheter that is not there have none.
+    """
 
     bore: float
     length: float
+    walled: bool = True
 
 
 def build_walls(
@@ -81,9 +85,12 @@ def build_walls(
 ) -> Walls:
     """All walls for a wire of `radius` (m). seam_reach : m, by which walls that run flush past the exit overlap."""
     lines = vessel_polylines(outline, tube)
-    flush = [_is_flush(lines, lip) for lip in _lips(tube)]
+    flush = [not tube.walled or _is_flush(lines, lip) for lip in _lips(tube)]
     polylines = [_vessel_line(line, closed, tube, seam_reach) for line, closed in lines]
-    polylines += _tube_polylines(tube, flush, seam_reach)
+    if tube.walled:
+        polylines += _tube_polylines(tube, flush, seam_reach)
+    if not polylines:
+        return _no_walls()
     parts = [_segments(line, radius, tube_friction if line.tube else friction) for line in polylines]
     corners = [_corners(line) for line in polylines]
     lips = np.array([lip for lip, is_flush in zip(_lips(tube), flush, strict=True) if not is_flush]).reshape(-1, 2)
@@ -96,6 +103,12 @@ def build_walls(
         corner_friction=np.where(corner_tube, tube_friction, friction),
         corner_tube=corner_tube,
     )
+
+
+def _no_walls() -> Walls:
+    plane, line = np.zeros((0, 2)), np.zeros(0)
+    no, none = np.zeros(0, np.bool_), np.zeros(0, np.int32)
+    return Walls(plane, plane, line, line, line, line, line, none, line, no, plane, line, no)
 
 
 def vessel_polylines(outline: Outline, tube: Tube) -> list[tuple[Floats, bool]]:

@@ -12,11 +12,12 @@ if TYPE_CHECKING:
     from gw_exudyn.scenario.catalogue import CatalogueWire, catalogue_names, load_catalogue
     from gw_exudyn.scenario.drive import SpeedDrive
     from gw_exudyn.scenario.loading import load_scenario, scenario_from_dict
+    from gw_exudyn.scenario.loads import DiscSpec, NoseSpec, TipSpec
     from gw_exudyn.scenario.schema import CatheterSpec, ContactSpec, OutputSpec, Scenario, SolverSpec, json_schema
     from gw_exudyn.scenario.shipped import list_shipped, resolve, shipped_folder
     from gw_exudyn.scenario.stiffness import StiffnessPiece
     from gw_exudyn.scenario.units import format_quantity, parse_quantity, parse_unit
-    from gw_exudyn.scenario.vessel import ArcVessel, PolygonVessel, StraightVessel
+    from gw_exudyn.scenario.vessel import ArcVessel, NoVessel, PolygonVessel, StraightVessel
     from gw_exudyn.scenario.wire import TipShape, WireSpec
 
 _HOME = {
@@ -24,6 +25,9 @@ _HOME = {
     "CatalogueWire": "catalogue",
     "CatheterSpec": "schema",
     "ContactSpec": "schema",
+    "DiscSpec": "loads",
+    "NoVessel": "vessel",
+    "NoseSpec": "loads",
     "OutputSpec": "schema",
     "PolygonVessel": "vessel",
     "Scenario": "schema",
@@ -32,6 +36,7 @@ _HOME = {
     "StiffnessPiece": "stiffness",
     "StraightVessel": "vessel",
     "TipShape": "wire",
+    "TipSpec": "loads",
     "WireSpec": "wire",
     "catalogue_names": "catalogue",
     "format_quantity": "units",
@@ -51,6 +56,9 @@ __all__ = [
     "CatalogueWire",
     "CatheterSpec",
     "ContactSpec",
+    "DiscSpec",
+    "NoVessel",
+    "NoseSpec",
     "OutputSpec",
     "PolygonVessel",
     "Scenario",
@@ -59,6 +67,7 @@ __all__ = [
     "StiffnessPiece",
     "StraightVessel",
     "TipShape",
+    "TipSpec",
     "WireSpec",
     "catalogue_names",
     "format_quantity",

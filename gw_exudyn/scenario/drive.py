@@ -8,7 +8,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from gw_exudyn.scenario.fields import Choice, Faults, Form, Section, wrong
-from gw_exudyn.scenario.kinds import DURATION, RAMP, SPEED, SPEED_OR_NONE, SPEED_TABLE, TRAVEL
+from gw_exudyn.scenario.kinds import DURATION, RAMP, SPEED, SPEED_OR_NONE, SPEED_TABLE, START, TRAVEL
 from gw_exudyn.scenario.units import format_quantity
 from gw_exudyn.scenario.words import plural
 
@@ -24,11 +24,15 @@ class SpeedDrive(Section):
 
     time : s, begins at 0, never falls; two equal times make a step. speed : m/s, as many; positive pushes in. The
         drive ends at time[-1].
+    start : m, length inserted at the start. hold : of the proximal end: `clamped`, `pinned` (it may turn), `axial` (it
+        may also move square to the axis).
     """
 
     kind: Literal["speed"] = "speed"
     time: tuple[float, ...]
     speed: tuple[float, ...]
+    start: float = 0.0
+    hold: str = "clamped"
 
     @property
     def duration(self) -> float:
@@ -37,7 +41,8 @@ class SpeedDrive(Section):
 
     def to_plain(self) -> dict[str, Any]:
         """The drive as a file could hold it: its table."""
-        return {"kind": self.kind, "table": [list(row) for row in zip(self.time, self.speed, strict=True)]}
+        table = [list(row) for row in zip(self.time, self.speed, strict=True)]
+        return {"kind": self.kind, "start": self.start, "hold": self.hold, "table": table}
 
 
 class PhaseForm(Section):
@@ -86,6 +91,12 @@ class DriveForm(Section):
         default=None, description="[[time, speed], ...] from time 0, linear in between; two equal times make a step"
     )
 
+    start: Annotated[float, START] = Field(default=0.0, description="length inserted at the start, straight")
+    hold: Annotated[str, Choice(("clamped", "pinned", "axial"))] = Field(
+        default="clamped",
+        description="of the proximal end: clamped; pinned: it may turn; axial: it may also move square to the axis",
+    )
+
     @field_validator("phases", mode="before")
     @classmethod
     def _some(cls, phases: Any) -> Any:
@@ -118,6 +129,9 @@ class DriveForm(Section):
 
     def resolve(self) -> SpeedDrive:
         """The table of speed against time. Raises ValidationError for a phase that is shorter than its ramp."""
+        return self._table().model_copy(update={"start": self.start, "hold": self.hold})
+
+    def _table(self) -> SpeedDrive:
         if self.table is not None:
             return SpeedDrive(time=tuple(t for t, _ in self.table), speed=tuple(v for _, v in self.table))
         if self.phases is not None:

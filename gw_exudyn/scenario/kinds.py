@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from gw_exudyn.scenario.fields import Number, Quantity, Row, Table
+from gw_exudyn.scenario.fields import Bore, Number, Quantity, Row, Table
 
 FULL_TURN = 2 * math.pi
 
@@ -28,7 +28,14 @@ ARC_RADIUS = Quantity("m", 0.1e-3, 5.0, "mm")
 ANGLE = Quantity("rad", -FULL_TURN, FULL_TURN, "deg")
 COORDINATE = Quantity("m", -10.0, 10.0, "mm")
 POINT = Row(("x", "y"), (COORDINATE, COORDINATE))
-BORE = Quantity("m", 0.05e-3, 50e-3, "mm")
+BORE = Bore("m", 0.05e-3, 50e-3, "mm")
+
+FORCE = Quantity("N", -1e3, 1e3, "mN")
+MOMENT = Quantity("N*m", -1e3, 1e3, "N*mm")
+DISC_RADIUS = Quantity("m", 1e-6, 1.0, "mm")
+DISC_STIFFNESS = Quantity("N/m", 1e-3, 1e12, "N/m", auto=True)
+NOSE_SPEED = Quantity("m/s", 1e-9, 1.0, "mm/s")
+NOSE_TRAVEL = Quantity("m", 1e-9, 5.0, "mm")
 
 FRICTION = Number(0.0, 2.0)
 FRICTION_OR_NONE = Number(0.0, 2.0, optional=True)
@@ -37,6 +44,7 @@ WALL_DAMPING = Quantity("N*s/m", 0.0, 1e6, "N*s/m", auto=True)
 
 SPEED = Quantity("m/s", -1.0, 1.0, "mm/s")
 SPEED_OR_NONE = Quantity("m/s", -1.0, 1.0, "mm/s", optional=True)
+START = Quantity("m", 0.0, 5.0, "mm")
 TRAVEL = Quantity("m", 1e-6, 5.0, "mm", optional=True)
 DURATION = Quantity("s", 1e-3, 1e5, "s", optional=True)
 RAMP = Quantity("s", 0.0, 1e5, "s", optional=True)
@@ -46,4 +54,5 @@ SPEED_TABLE = Table(Row(("time", "speed"), (INSTANT, SPEED)), 2, 100_000, option
 SOLVER_STEP = Quantity("s", 1e-4, 1.0, "s")
 SMALLEST_STEP = Quantity("s", 1e-9, 1.0, "s")
 TOLERANCE = Number(1e-12, 1e-3)
+RESIDUAL = Quantity("N", 1e-15, 1e-3, "N")
 OUTPUT_INTERVAL = Quantity("s", 1e-4, 1e5, "s")

@@ -21,10 +21,18 @@ from gw_exudyn.scenario.outline import (
 )
 from gw_exudyn.scenario.words import shown
 
-VESSEL_KINDS = Choice(("straight", "arc", "polygon"), later=("branches", "centreline"))
+VESSEL_KINDS = Choice(("straight", "arc", "polygon", "none"), later=("branches", "centreline"))
 _STEEPEST_FACET = math.radians(45)
 
 _END = Field(default="open", description="open: the far end is no wall; dead: it is closed")
+
+
+class NoVessel(Section):
+    """No vessel: nothing stands in the wire's way."""
+
+    what: ClassVar[str] = "no vessel"
+
+    kind: Annotated[Literal["none"], Choice(("none",))]
 
 
 class StraightVessel(Section):
@@ -209,7 +217,8 @@ def _tag(vessel: Any) -> str:
 VesselForm = Annotated[
     Annotated[StraightVessel, Tag(f"{KIND_TAG}straight")]
     | Annotated[ArcVessel, Tag(f"{KIND_TAG}arc")]
-    | Annotated[PolygonForm, Tag(f"{KIND_TAG}polygon")],
+    | Annotated[PolygonForm, Tag(f"{KIND_TAG}polygon")]
+    | Annotated[NoVessel, Tag(f"{KIND_TAG}none")],
     Discriminator(_tag),
 ]
 """What a file may hold."""
@@ -229,7 +238,7 @@ def _check_kind(vessel: Any) -> None:
 
 
 Vessel = Annotated[
-    StraightVessel | ArcVessel | PolygonVessel,
-    Form(VesselForm, (StraightVessel, ArcVessel, PolygonVessel), check=_check_kind),
+    StraightVessel | ArcVessel | PolygonVessel | NoVessel,
+    Form(VesselForm, (StraightVessel, ArcVessel, PolygonVessel, NoVessel), check=_check_kind),
 ]
 """The vessel as the program sees it, read from any of the forms."""
