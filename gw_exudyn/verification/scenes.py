@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
+
+import numpy as np
 
 from gw_exudyn.scenario import Scenario, scenario_from_dict
 
@@ -24,3 +27,19 @@ def alone(
     wire = {"length": length, "bending_stiffness": stiffness, "segments": segments, **sections.pop("wire", {})}
     still = {**STILL, "duration": seconds, "start": length, **(drive or {})}
     return scene(wire, still, vessel={"kind": "none"}, catheter={}, output={"interval": seconds}, **sections)
+
+
+def corner_vessel(width: float) -> dict[str, Any]:
+    """A channel along x that turns left by 60 degrees at the origin."""
+    half, turn, before, after = width / 2, math.radians(60), -0.2, 0.06
+    along, left = np.array([math.cos(turn), math.sin(turn)]), np.array([-math.sin(turn), math.cos(turn)])
+    corner = half * np.array([-math.tan(turn / 2), 1.0])
+    points = [
+        (before, -half),
+        tuple(-corner),
+        tuple(after * along - half * left),
+        tuple(after * along + half * left),
+        tuple(corner),
+        (before, half),
+    ]
+    return {"kind": "polygon", "points": [[float(x), float(y)] for x, y in points], "open_edges": [2, 5]}

@@ -15,15 +15,15 @@ from numpy.typing import NDArray
 
 from gw_exudyn.engine.cable import Cable, Inserted, SmoothBend, insert
 from gw_exudyn.result import Result
-from gw_exudyn.scenario import scenario_from_dict
 from gw_exudyn.simulation import simulate
 from gw_exudyn.verification.elastica import Corner, Elastica, Law, Pushed, Rod
 from gw_exudyn.verification.evidence import Case, Chart, Curve, Evidence, Finding
+from gw_exudyn.verification.scenes import DIAMETER, SPEED, corner_vessel, scene
 
 Floats = NDArray[np.float64]
 
 _GROUP = "second opinion"
-_RADIUS, _WALL_STIFFNESS, _SPEED = 0.18e-3, 2000.0, 2e-3
+_RADIUS, _WALL_STIFFNESS = DIAMETER / 2, 2000.0
 
 
 def smooth_bend(distal: float, proximal: float) -> Finding:
@@ -77,7 +77,7 @@ def sharp_bend() -> Finding:
     table = [[float(s), near * (far / near) ** (float(s) / stretch)] for s in places]
     result = _simulated(
         wire={"length": length, "bending_stiffness": {"table": [*table, [length, far]]}, "grading": 4.0},
-        vessel=_corner_vessel(width),
+        vessel=corner_vessel(width),
         catheter={"exit": [-5e-3, 0.0], "bore": width},
         friction=0.4,
         travels=travels,
@@ -100,45 +100,18 @@ def _exponential_flexibility(s: Floats, near: float, far: float, stretch: float)
     return total
 
 
-def _corner_vessel(width: float) -> dict[str, Any]:
-    """A channel along x that turns left by 60 degrees at the origin."""
-    half, turn, before, after = width / 2, math.radians(60), -0.2, 0.06
-    along, left = np.array([math.cos(turn), math.sin(turn)]), np.array([-math.sin(turn), math.cos(turn)])
-    corner = half * np.array([-math.tan(turn / 2), 1.0])
-    points = [
-        (before, -half),
-        tuple(-corner),
-        tuple(after * along - half * left),
-        tuple(after * along + half * left),
-        tuple(corner),
-        (before, half),
-    ]
-    return {"kind": "polygon", "points": [[float(x), float(y)] for x, y in points], "open_edges": [2, 5]}
-
-
 def _simulated(
     wire: dict[str, Any], vessel: dict[str, Any], catheter: dict[str, Any], friction: float, travels: Floats
 ) -> Result:
     """The insertion by the simulation, with an output at each of the travels (equally spaced, m)."""
-    interval = float(travels[0]) / _SPEED
     return simulate(
-        scenario_from_dict(
-            {
-                "wire": {
-                    "diameter": 2 * _RADIUS,
-                    "density": 6450.0,
-                    "segments": 100,
-                    "damping_time": 0.0,
-                    "imperfection": 0.0,
-                    **wire,
-                },
-                "vessel": vessel,
-                "catheter": catheter,
-                "contact": {"friction_coefficient": friction, "wall_stiffness": _WALL_STIFFNESS},
-                "drive": {"kind": "speed", "speed": _SPEED, "distance": float(travels[-1])},
-                "solver": {"step": 0.05},
-                "output": {"interval": interval},
-            }
+        scene(
+            {"segments": 100, "damping_time": 0.0, **wire},
+            {"kind": "speed", "speed": SPEED, "distance": float(travels[-1])},
+            vessel=vessel,
+            catheter=catheter,
+            contact={"friction_coefficient": friction, "wall_stiffness": _WALL_STIFFNESS},
+            output={"interval": float(travels[0]) / SPEED},
         )
     )
 
