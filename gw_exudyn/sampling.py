@@ -151,8 +151,7 @@ def _shares(pairs: Pairs, live: NDArray[np.bool_]) -> tuple[Floats, Floats]:
 def _forces(stepper: Stepper, contacts: Mapping[str, Floats]) -> dict[str, Any]:
     force, normal = contacts["force"], contacts["contact_normal_force"]
     vessel, inside = contacts["contact_owner"] == VESSEL, contacts["contact_owner"] == CATHETER
-    sleeve = stepper.model.frame.vectors_out(-stepper.loads.sleeve_force)
-    wall, catheter = force[vessel].sum(axis=0), force[inside].sum(axis=0) + sleeve
+    wall, catheter = force[vessel].sum(axis=0), force[inside].sum(axis=0)
     tip = force[contacts["at_tip"].astype(bool)].sum(axis=0)
     return {
         "push_force": stepper.instant.push,
@@ -164,7 +163,7 @@ def _forces(stepper: Stepper, contacts: Mapping[str, Floats]) -> dict[str, Any]:
         "wall_force_max": np.hypot(*force[vessel].T).max(initial=0.0),
         "catheter_force_x": catheter[0],
         "catheter_force_y": catheter[1],
-        "catheter_force_normal": normal[inside].sum() + stepper.loads.sleeve_normal,
+        "catheter_force_normal": normal[inside].sum(),
         "contacts": np.count_nonzero(vessel),
         "penetration_max": max(stepper.contact.deepest().depth, stepper.loads.discs.depth),
     }
@@ -180,7 +179,7 @@ def _loads(stepper: Stepper) -> dict[str, float]:
             travel = float(np.hypot(*(disc.centre(stepper.time) - disc.at)))
         else:
             support += force
-    support, held = frame.vectors_out(support), frame.vectors_out(-stepper.tip_reaction())
+    support, held = frame.vectors_out(support), frame.vectors_out(-stepper.loads.hold_force(stepper.contact.motion))
     return {
         "load_work": stepper.energies.load_work,
         "support_force_x": support[0],

@@ -37,8 +37,6 @@ def _section(section: Section, above: str) -> Iterator[tuple[str, str]]:
         elif name == "supports":
             for i, support in enumerate(value):
                 yield from _section(support, f"{path}.{i}.")
-        elif name == "bore" and value == 0.0:
-            yield path, "sleeve"
         elif isinstance(value, Section):
             yield from _section(value, f"{path}.")
         elif value is not None or (isinstance(kind, Quantity) and kind.auto):

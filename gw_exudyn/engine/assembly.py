@@ -1,8 +1,7 @@
 """The multibody system in Exudyn: a hub on the catheter's axis, rigid segments, revolute joints, torsional springs.
 
-Coordinates in their global order: the hub's (x, y, angle), those of segments 0 to n - 1, and where the tip is held those
-of its carriage. Constraint forces: the hub's three, two of each joint from the hub on, the carriage's three, two of the
-joint at the tip. All in the catheter's frame.
+Coordinates in their global order: the hub's (x, y, angle), then those of segments 0 to n - 1. All in the catheter's
+frame.
 """
 
 from __future__ import annotations
@@ -21,24 +20,6 @@ from gw_exudyn.model.wire import Wire
 Floats = NDArray[np.float64]
 
 HUB_COORDINATES = 3
-
-
-def of_segments(coordinates: Any, segments: int) -> Floats:
-    """(n, 3): the segments' part of Exudyn's coordinates, rates or accelerations."""
-    part: Floats = np.asarray(coordinates)[HUB_COORDINATES : HUB_COORDINATES + 3 * segments].reshape(-1, 3)
-    return part
-
-
-def of_joints(multipliers: Any, segments: int) -> Floats:
-    """(n, 2), N: the force in each joint, on the segment before it."""
-    part: Floats = np.asarray(multipliers)[HUB_COORDINATES : HUB_COORDINATES + 2 * segments].reshape(-1, 2)
-    return part
-
-
-def at_tip(multipliers: Any, segments: int) -> Floats:
-    """(2,), N: force of what holds the tip on the wire; zeros where nothing does."""
-    beyond = np.asarray(multipliers)[2 * HUB_COORDINATES + 2 * segments :]
-    return np.array(beyond) if len(beyond) else np.zeros(2)
 
 
 @dataclass(frozen=True)
@@ -73,7 +54,7 @@ def assemble(model: Model, contact_jacobian: Jacobian) -> System:
     reference = reference_places(wire)
     held = model.loads.tip.held
     # Nothing moves at first where what holds the tip stops it.
-    speed, start = (0.0 if held[0] else model.drive.speed_at(0.0)), model.drive.position_at(0.0)
+    speed, start = (0.0 if held[0] > 0 else model.drive.speed_at(0.0)), model.drive.position_at(0.0)
     hub_mass = float(wire.mass[0])
     hub, hub_node = _body(mbs, items, (-wire.length, 0.0, 0.0), hub_mass, float(wire.inertia[0]), start, speed)
     drive = _guide(mbs, items, hub_node, (True, model.scenario.drive.hold != "axial", True))
@@ -87,10 +68,6 @@ def assemble(model: Model, contact_jacobian: Jacobian) -> System:
             (bodies[i - 1], nodes[i - 1], wire.lengths[i - 1] / 2) if i else (hub, hub_node, 0.0)
         )
         _joint(mbs, items, wire, i, (before, before_node, float(reach)), (bodies[i], nodes[i]))
-    if any(held):
-        carriage, node = _body(mbs, items, (start, 0.0, 0.0), hub_mass, float(wire.inertia[0]), 0.0, 0.0)
-        _guide(mbs, items, node, (*held, True))
-        _revolute(mbs, items, (bodies[-1], float(wire.lengths[-1]) / 2), (carriage, 0.0))
     count = 3 * wire.segments
     empty = exu.MatrixContainer()
     empty.SetWithSparseMatrix(np.zeros((1, 3)), count, count)  # sparse, so that the contact's tangent is too
@@ -116,9 +93,7 @@ def reference_places(wire: Wire) -> Floats:
     return places
 
 
-def _body(
-    mbs: Any, items: Any, place: Any, mass: float, inertia: float, start: float, speed: float
-) -> tuple[int, int]:
+def _body(mbs: Any, items: Any, place: Any, mass: float, inertia: float, start: float, speed: float) -> tuple[int, int]:
     node = mbs.AddNode(
         items.NodeRigidBody2D(
             referenceCoordinates=[float(x) for x in place],
@@ -130,9 +105,9 @@ def _body(
 
 
 def _guide(mbs: Any, items: Any, node: int, held: tuple[bool, bool, bool]) -> int:
-    """Hold the coordinates of a hub or a carriage; the first constraint, which is returned, places it along the axis.
+    """Hold the hub's coordinates; the first constraint, which is returned, places it along the axis.
 
-    held : a constraint that holds nothing keeps its place among the constraint forces, with none.
+    held : of x, y and angle; a constraint that holds nothing keeps its place among the constraint forces.
     """
     ground = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=mbs.AddNode(items.NodePointGround()), coordinate=0))
     constraints = []
@@ -150,7 +125,11 @@ def _joint(mbs: Any, items: Any, wire: Wire, i: int, before: tuple[int, int, flo
     cheaper than its connector in space.
     """
     body, node, reach = before
-    _revolute(mbs, items, (body, reach), (after[0], -float(wire.lengths[i]) / 2))
+    distal_end = mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[reach, 0.0, 0.0]))
+    proximal_end = mbs.AddMarker(
+        items.MarkerBodyRigid(bodyNumber=after[0], localPosition=[-float(wire.lengths[i]) / 2, 0.0, 0.0])
+    )
+    mbs.AddObject(items.ObjectJointRevolute2D(markerNumbers=[distal_end, proximal_end]))
     turns = [mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=n, coordinate=2)) for n in (node, after[1])]
     mbs.AddObject(
         items.CoordinateSpringDamper(
@@ -160,12 +139,3 @@ def _joint(mbs: Any, items: Any, wire: Wire, i: int, before: tuple[int, int, flo
             offset=float(wire.rest_angle[i]),
         )
     )
-
-
-def _revolute(mbs: Any, items: Any, before: tuple[int, float], after: tuple[int, float]) -> None:
-    """Join two bodies at places on their axes, (body, m from its centre)."""
-    ends = [
-        mbs.AddMarker(items.MarkerBodyRigid(bodyNumber=body, localPosition=[reach, 0.0, 0.0]))
-        for body, reach in (before, after)
-    ]
-    mbs.AddObject(items.ObjectJointRevolute2D(markerNumbers=ends))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gw_exudyn.engine.assembly import System, at_tip, of_joints, of_segments
+from gw_exudyn.engine.assembly import HUB_COORDINATES, System
 from gw_exudyn.engine.library import exudyn
 from gw_exudyn.engine.settings import acceleration_factor, velocity_factor
 from gw_exudyn.model.contact import Contact
@@ -21,8 +21,8 @@ _OPEN = 0.05
 """What a segment may pass in one go where it meets nothing, over the wire's length; else it is the wire's radius."""
 
 _LIMIT = 0.75
-"""Largest move of a segment in one Newton step, in radii of the wire (or what `Newton` takes for it). With the signed gap it keeps corners on their
-side."""
+"""Largest move of a segment in one Newton step, in radii of the wire or in what stands for it (`_passable`). With the
+signed gap it keeps corners on their side."""
 
 _GUESS = 0.25
 """How far the first guess of a step may move a segment beyond the drive's travel, in radii."""
@@ -35,6 +35,10 @@ _TUNNELLED = 0.5
 
 _JUMP, _FOLLOWED = 1.5, 2.0
 """A step may move a segment by so many radii, and by so many times the drive's travel, together."""
+
+_SLIGHT = 1e-4
+"""Share of the inertia in a nominal step that counts as stiffness when stability is judged: enough for a wire that
+nothing holds yet, next to nothing beside a load."""
 
 _HELD_ITERATIONS = 1
 """Iterations in which the tangent keeps the stiffness of the contacts at the step's start."""
@@ -79,8 +83,8 @@ class Newton:
         self.iterations, self.residuals, self.tangents, self.refused = counts
 
     def attach(self, system: System, nominal_step: float) -> None:
-        """Work on this system. nominal_step : s; its inertia alone counts for what nothing else holds."""
-        self._inertia = acceleration_factor(nominal_step)
+        """Work on this system. nominal_step : s."""
+        self._inertia = _SLIGHT * acceleration_factor(nominal_step)
         self._system = system
         self._data = system.mbs.systemData
 
@@ -117,8 +121,8 @@ class Newton:
         self._multipliers = self._data.GetAECoordinates()
 
     def tangent(self, _mbs: Any, _t: float, _item: int, _q: Any, _q_t: Any, factor: float, _factor_t: float) -> Any:
-        """Share of contact and loads in the tangent at the place of the last residual. Exudyn wants minus the derivative of the
-        force.
+        """Share of contact and loads in the tangent at the place of the last residual. Exudyn wants minus the
+        derivative of the force.
 
         Position and velocity parts were joined with the ratio of the two factors, which the integrator fixes.
         """
@@ -150,7 +154,7 @@ class Newton:
         self._last_move = 0.0
         change = q - self._data.GetODE2Coordinates(exudyn().ConfigurationType.StartOfStep)
         most = _GUESS * self._radius + abs(self._travel)
-        share = min(1.0, most / max(self._largest_move(change), 1e-30))
+        share = min(1.0, most / max(_largest_move(change), 1e-30))
         place, rate = self._go_back(q, q_t, (share - 1) * change)
         self._evaluate(place, rate, predicted)
         return place
@@ -172,15 +176,15 @@ class Newton:
         self._loads.evaluate(self._contact.motion)
 
     def _move(self, q: Floats, q_t: Floats) -> None:
-        count = self._contact.wire.segments
-        self._contact.motion.set(of_segments(q, count) + self._system.reference, of_segments(q_t, count))
+        places = np.asarray(q)[HUB_COORDINATES:].reshape(-1, 3) + self._system.reference
+        self._contact.motion.set(places, np.asarray(q_t)[HUB_COORDINATES:].reshape(-1, 3))
 
     def _shortened(self, q: Floats, q_t: Floats, predicted: bool) -> Floats:
         """Evaluate Newton's new place, or one nearer to the last: no segment moves too far, and a contact that was
         open no more than closes, so that the next tangent knows of it. Place, rate and acceleration are shortened
         together."""
         change = q - self._last
-        self._last_move = self._largest_move(change)
+        self._last_move = _largest_move(change)
         share = min(1.0, _LIMIT * self._radius / max(self._last_move, 1e-30))
         before = self._contact.gaps()
         for _ in range(2):
@@ -205,11 +209,9 @@ class Newton:
             self._force += self._loads.force
             self._tangent += self._loads.tangent.reshape(-1)
         motion, wire = self._contact.motion, self._contact.wire
-        multipliers = self._data.GetAECoordinates()
-        pushed, held = -of_joints(multipliers, wire.segments), at_tip(multipliers, wire.segments)
-        along = motion.c * pushed[:, 0] + motion.s * pushed[:, 1]
-        along[:-1] += motion.c[:-1] * pushed[1:, 0] + motion.s[:-1] * pushed[1:, 1]
-        along[-1] -= motion.c[-1] * held[0] + motion.s[-1] * held[1]
+        on_proximal_end = -np.asarray(self._data.GetAECoordinates())[HUB_COORDINATES:].reshape(-1, 2)
+        along = motion.c * on_proximal_end[:, 0] + motion.s * on_proximal_end[:, 1]
+        along[:-1] += motion.c[:-1] * on_proximal_end[1:, 0] + motion.s[:-1] * on_proximal_end[1:, 1]
         self._turning = wire.lengths / 2 * along
         if self._last_move > _NEAR * self._radius:
             np.minimum(along, 0.0, out=along)
@@ -234,25 +236,24 @@ class Newton:
         return self._contact.deepest().depth > _TUNNELLED * self._contact.wire.radius
 
     def _unstable(self) -> bool:
-        wire, tip = self._contact.wire, self._loads.tip
+        wire = self._contact.wire
         stiffness = wire.joint_stiffness + velocity_factor(self._step) * wire.joint_damping
-        if not (self._loads.present or any(tip.held) or self._system.base_moves):
+        if not (self._loads.present or self._system.base_moves):
             return self._contact.is_unstable(stiffness)
         blocks = -self._contact.tangent.reshape(-1, 3, 3) - self._loads.tangent
         blocks[:, 2, 2] -= self._turning
         blocks[:, (0, 1, 2), (0, 1, 2)] += self._inertia * np.column_stack([wire.mass, wire.mass, wire.inertia])
-        negative = negative_pivots(
-            wire, self._contact.motion, blocks, stiffness, tip.held, base_moves=self._system.base_moves
-        )
+        negative = negative_pivots(wire, self._contact.motion, blocks, stiffness, base_moves=self._system.base_moves)
         # Without a potential there is no minimum; what can be lost is divergence, where the determinant changes its
         # sign [Ziegler 1968].
         has_potential = not self._loads.follows and not self._contact.rubs()
         return negative > 0 if has_potential else negative % 2 == 1
 
-    def _largest_move(self, change: Floats) -> float:
-        """Largest component, m, of the segments' moves in a change of Exudyn's coordinates."""
-        shift = of_segments(change, self._contact.wire.segments)[:, :2]
-        return max(float(shift.max()), -float(shift.min()))
+
+def _largest_move(change: Floats) -> float:
+    """Largest component, m, of the segments' moves in a change of Exudyn's coordinates."""
+    shift = change[HUB_COORDINATES:].reshape(-1, 3)[:, :2]
+    return max(float(shift.max()), -float(shift.min()))
 
 
 def _passable(contact: Contact, loads: Loads) -> float:

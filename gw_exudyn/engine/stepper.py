@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from gw_exudyn.engine.assembly import System, assemble, at_tip, of_segments
+from gw_exudyn.engine.assembly import HUB_COORDINATES, System, assemble
 from gw_exudyn.engine.interrupt import after_the_step
 from gw_exudyn.engine.library import exudyn
 from gw_exudyn.engine.newton import Newton
@@ -58,9 +58,7 @@ class Stepper:
         self._newton = Newton(self.contact, self.loads)
         self.system: System = assemble(model, self._newton.tangent)
         self._newton.attach(self.system, spec.step)
-        self._settings = simulation_settings(
-            spec.step, spec.minimum_step, spec.tolerance, spec.absolute_tolerance
-        )
+        self._settings = simulation_settings(spec.step, spec.minimum_step, spec.tolerance, spec.absolute_tolerance)
         self._solver = exudyn().MainSolverImplicitSecondOrder()
         self._newton.install(self._start_trial, self._end_step)
         if not self._solver.InitializeSolver(self.system.mbs, self._settings):
@@ -158,7 +156,7 @@ class Stepper:
         self._time = time
         before, lost = self._instant, self.energies.numerical_loss + self.energies.damping_loss
         self._instant = self._look()
-        acceleration = of_segments(self.system.mbs.systemData.GetODE2Coordinates_tt(), self.model.wire.segments)
+        acceleration = np.asarray(self.system.mbs.systemData.GetODE2Coordinates_tt())[HUB_COORDINATES:].reshape(-1, 3)
         self.energies = advanced(
             self.energies, self.contact, self._wall_start, before, self._instant, acceleration, step
         )
@@ -185,7 +183,7 @@ class Stepper:
                 self.peaks[name] = (value, time)
 
     def _look(self) -> Snapshot:
-        loads = self.loads.instant(self.contact.motion, self.tip_reaction())
+        loads = self.loads.instant(self.contact.motion)
         position = self.drive.position_at(self._time)
         return snapshot(self.model.wire, self.contact.motion, self.push_force(), position, loads)
 
@@ -199,10 +197,6 @@ class Stepper:
         inertia."""
         data = self.system.mbs.systemData
         return -float(data.GetAECoordinates()[0]) - self.system.hub_mass * float(data.GetODE2Coordinates_tt()[0])
-
-    def tip_reaction(self) -> Floats:
-        """(2,), N: force of what holds the tip on the wire, in the catheter's frame."""
-        return at_tip(self.system.mbs.systemData.GetAECoordinates(), self.model.wire.segments)
 
     @property
     def instant(self) -> Snapshot:
@@ -292,11 +286,16 @@ class Stepper:
         self.contact.accept()
         zeros = np.zeros_like(q)
         multipliers = np.zeros(len(data.GetAECoordinates()))
-        loads = self.loads.instant(self.contact.motion, np.zeros(2))
+        loads = self.loads.instant(self.contact.motion)
         instant = snapshot(self.model.wire, self.contact.motion, 0.0, 0.0, loads)
         stored = instant.elastic + loads.stored + instant.kinetic
         energies = replace(
-            Energies(), elastic=instant.elastic, wall=loads.stored, kinetic=instant.kinetic, start=stored, largest_work=stored
+            Energies(),
+            elastic=instant.elastic,
+            wall=loads.stored,
+            kinetic=instant.kinetic,
+            start=stored,
+            largest_work=stored,
         )
         return State(0.0, q, q_t, zeros, zeros.copy(), multipliers, self.contact.memory, energies)
 

@@ -100,7 +100,7 @@ def build(scenario: Scenario) -> Model:
     plane = build_outline(scenario.vessel)
     outline = Outline(frame.points_in(plane.points), plane.open_edges)
     pulled_back, bore = max(0.0, -drive.extremes()[0]), scenario.catheter.bore
-    tube = Tube(bore or scenario.wire.diameter, 2 * wire.length + pulled_back, walled=bool(bore))
+    tube = Tube(bore or scenario.wire.diameter, 2 * wire.length + pulled_back, walled=bore is not None)
     loads = build_loads(scenario, wire, frame)
     check(scenario, outline, tube, drive, loads.discs)
     around = surroundings(outline, bore_or_more(scenario))

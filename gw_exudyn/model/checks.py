@@ -29,9 +29,10 @@ def check(scenario: Scenario, outline: Outline, tube: Tube, drive: Drive, discs:
 
     outline, tube and discs in the catheter's frame.
     """
-    problems = _bore(scenario) + _travel(scenario, drive) + _discs(scenario, drive, discs)
+    problems = _bore(scenario)
     if len(outline.points):
         problems += _exit(scenario, outline, tube) or _start(scenario, outline, tube)
+    problems += _travel(scenario, drive) + _discs(scenario, drive, discs)
     if problems:
         raise ScenarioError(problems)
 
@@ -121,15 +122,13 @@ def _discs(scenario: Scenario, drive: Drive, discs: Sequence[Disc]) -> list[Prob
         if side and room >= radius - _STEP:
             continue
         path = f"supports.{number}" if number < len(scenario.supports) else "nose"
-        text = (
-            f"stands in the wire, or on its other side: {_mm(disc.radius + radius)} from its axis are needed at the start"
-        )
+        text = f"stands in the wire or on its other side; {_mm(disc.radius + radius)} from its axis are needed"
         problems.append(scenario.problem(f"{path}.at", f"{text}; move it away from the wire, or take another side"))
     return problems
 
 
 def first_within(points: Floats, closed: bool, radius: float) -> float:
-    """Least x >= 0, m, at which a polyline (m, 2) comes nearer than `radius` to the positive x axis; infinite if none."""
+    """Least x >= 0, m, at which a polyline (m, 2) comes nearer than `radius` to the x axis; infinite if none."""
     a = points if closed else points[:-1]
     b = np.roll(points, -1, axis=0) if closed else points[1:]
     found = np.inf

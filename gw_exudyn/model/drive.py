@@ -52,7 +52,7 @@ class Drive:
         return float(np.abs(speeds).max())
 
     def extremes(self) -> tuple[float, float]:
-        """Least and largest length inserted up to the end of the table, m; a turning point inside a ramp is found too."""
+        """Least and largest length inserted until the table ends, m; a turning point inside a ramp is found too."""
         times = [float(t) for t in self.time]
         for i in range(len(times) - 1):
             before, after = float(self.speed[i]), float(self.speed[i + 1])

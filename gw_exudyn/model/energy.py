@@ -31,7 +31,8 @@ class Energies:
 
     elastic (joints), wall (normal and tangential springs), kinetic : now. insertion_work (by the drive), friction_loss,
         damping_loss (joints and walls), numerical_loss : sums since the start.
-    load_work (by loads at the tip and the nose) : since the start. start : stored at the start. largest_work : the largest of the work and of the stored energy so far.
+    load_work (by loads at the tip and the nose) : since the start.
+    start : stored at the start. largest_work : the largest of the works and of the stored energy so far.
     """
 
     elastic: float = 0.0
@@ -49,7 +50,9 @@ class Energies:
     def error(self) -> float:
         """What does not add up, J."""
         stored = self.elastic + self.wall + self.kinetic - self.start
-        return self.insertion_work + self.load_work - stored - self.friction_loss - self.damping_loss - self.numerical_loss
+        return (
+            self.insertion_work + self.load_work - stored - self.friction_loss - self.damping_loss - self.numerical_loss
+        )
 
 
 @dataclass(frozen=True)
@@ -68,9 +71,7 @@ class Snapshot:
     loads: LoadsInstant = NO_LOADS
 
 
-def snapshot(
-    wire: Wire, motion: Motion, push: float, travel: float, loads: LoadsInstant = NO_LOADS
-) -> Snapshot:
+def snapshot(wire: Wire, motion: Motion, push: float, travel: float, loads: LoadsInstant = NO_LOADS) -> Snapshot:
     """This instant."""
     q, v = motion.q.copy(), motion.v.copy()
     bend = relative_angles(q[:, 2]) - wire.rest_angle
@@ -186,10 +187,9 @@ def _static_force(pairs: Pairs, toe: float, stiffness: float) -> Floats:
 def _finite_turns(wire: Wire, old: Snapshot, new: Snapshot, needed: Floats) -> float:
     """J: work of the joints' forces because a rigid segment's end moves on an arc, not along the tangent at its place.
 
-    needed : (n, 3), inertia less the forces on each segment. The force in joint i is what the distal part needs, less
-    what a hold of the tip gives.
+    needed : (n, 3), inertia less the forces on each segment. The force in joint i is what the distal part needs.
     """
-    joint = np.cumsum(needed[::-1, :2], axis=0)[::-1] - new.loads.tip_reaction
+    joint = np.cumsum(needed[::-1, :2], axis=0)[::-1]
     half = (wire.lengths / 2)[:, None]
     angle0, angle1 = old.q[:, 2], new.q[:, 2]
     direction0 = np.column_stack([np.cos(angle0), np.sin(angle0)])
@@ -198,4 +198,4 @@ def _finite_turns(wire: Wire, old: Snapshot, new: Snapshot, needed: Floats) -> f
     arc = half * (direction1 - direction0 - tangent)
     gap = arc.copy()
     gap[1:] += arc[:-1]
-    return float((joint * gap).sum() - new.loads.tip_reaction @ arc[-1])
+    return float((joint * gap).sum())

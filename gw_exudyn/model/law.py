@@ -141,7 +141,7 @@ def _snug(scenario: Scenario, around: Surroundings) -> list[str]:
 
 
 def bore_or_more(scenario: Scenario) -> float:
-    """The catheter's bore, m; ten diameters of the wire where it has no walls, as in a sleeve or where it is not."""
+    """The catheter's bore, m; ten diameters of the wire where there is none."""
     return scenario.catheter.bore or 10 * scenario.wire.diameter
 
 

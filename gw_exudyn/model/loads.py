@@ -1,4 +1,4 @@
-"""Loads on the wire besides contact with walls: at its tip, from discs, and the sleeve that may guide it."""
+"""Loads on the wire besides contact with walls: at its tip, and from discs."""
 
 from __future__ import annotations
 
@@ -19,12 +19,13 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
+_ROUND = 16.0
+"""Axial over bending stiffness of a solid round wire, times its diameter squared: what holds a tip yields as the wire,
+whose segments are rigid, would along its axis. Without any give a straight wire could not be pushed at all."""
+
 _DISC_STIFFNESS = 2000.0
 """Stiffness of a disc's contact over that of the wire in three-point bending between the discs: together nose and
 supports give way by some ten-thousandth of the deflection."""
-
-_SLEEVE_STIFFNESS = 10.0
-"""Stiffness of the sleeve over that of a joint, seen at a segment's length."""
 
 
 @dataclass(frozen=True)
@@ -32,8 +33,8 @@ class LoadsInstant:
     """What the energy balance needs of the loads at an instant.
 
     force : (n, 3), N and N m about the centres; (1, 3) zeros where there are no loads. effort, place : (e,), loads that
-        do work, and what they do it on (N and m, N m and rad). elastic : J, in the clamp at the tip. stored : J, in the
-        springs of discs and sleeve. tip_reaction : (2,), N, of what holds the tip on the wire.
+        do work, and what they do it on (N and m, N m and rad). elastic : J, in what holds the tip. stored : J, in the
+        springs of the discs.
     """
 
     force: Floats = field(default_factory=lambda: np.zeros((1, 3)))
@@ -41,7 +42,6 @@ class LoadsInstant:
     place: Floats = field(default_factory=lambda: np.zeros(0))
     elastic: float = 0.0
     stored: float = 0.0
-    tip_reaction: Floats = field(default_factory=lambda: np.zeros(2))
 
 
 @dataclass(frozen=True)
@@ -49,15 +49,17 @@ class TipLoad:
     """Loads at the tip and what holds it, in the catheter's frame.
 
     dead : (2,), N, fixed in space. follower : (2,), N, along the wire and to its left. moment : N m. ramp : s.
-    held : (along, across) the catheter's axis: the tip's place is fixed there. clamp : N m/rad, of the half segment
-        between the last joint's stretch and a clamped tip; 0 where it may turn. rest : rad, its angle without load.
+    held : (2,), N/m, along and across the catheter's axis, of what holds the tip's place; 0 where it is free.
+    at : (2,), m, the place that is held. clamp : N m/rad, of the half segment between the last joint's stretch and a
+        clamped tip; 0 where it may turn. rest : rad, its angle without load.
     """
 
     dead: Floats
     follower: Floats
     moment: float
     ramp: float
-    held: tuple[bool, bool]
+    held: Floats
+    at: Floats
     clamp: float
     rest: float
 
@@ -68,27 +70,26 @@ class TipLoad:
 
 @dataclass(frozen=True)
 class LoadSet:
-    """What loads a wire. sleeve : the catheter is one, without clearance or friction."""
+    """What loads a wire."""
 
     tip: TipLoad
     discs: tuple[Disc, ...]
-    sleeve: bool
 
 
 class Loads:
-    """All loads of a model in motion. Bodies carry (x, y, angle); force : (n, 3), tangent : (n, 3, 3), d force/dq of each body,
-    both of the last `evaluate` at the time `time`, s.
+    """All loads of a model in motion.
+
+    force : (n, 3), N and N m about the centres. tangent : (n, 3, 3), d force/dq of each body. Both of the last
+    `evaluate`, at the time `time`, s.
     """
 
     def __init__(self, wire: Wire, loads: LoadSet) -> None:
-        self.tip, self.sleeve = loads.tip, loads.sleeve
+        self.tip = loads.tip
         self.discs = Discs(wire, loads.discs)
         self._wire, self._half = wire, wire.lengths / 2
         self.force, self.tangent = np.zeros((wire.segments, 3)), np.zeros((wire.segments, 3, 3))
         self.time = 0.0
-        self.present = bool(loads.discs) or self.sleeve or self.tip.clamp > 0 or self.loads_tip
-        self._sleeve_stiffness = _SLEEVE_STIFFNESS * float((wire.joint_stiffness / wire.lengths**2).max())
-        self.sleeve_force, self.sleeve_normal, self._sleeve_energy = np.zeros(2), 0.0, 0.0
+        self.present = bool(loads.discs) or bool(self.tip.held.any()) or self.loads_tip
 
     @property
     def loads_tip(self) -> bool:
@@ -108,13 +109,11 @@ class Loads:
         self.tangent[:] = 0.0
         self._add_tip(motion)
         self.discs.add(motion, self.time, self.force, self.tangent)
-        if self.sleeve:
-            self._add_sleeve(motion)
 
-    def instant(self, motion: Motion, tip_reaction: Floats) -> LoadsInstant:
-        """At the place and time of the last `evaluate`. tip_reaction : (2,), N, of what holds the tip on the wire."""
+    def instant(self, motion: Motion) -> LoadsInstant:
+        """At the place and time of the last `evaluate`."""
         if not self.present:
-            return LoadsInstant(tip_reaction=tip_reaction)
+            return LoadsInstant()
         along, arm = self._along(motion), self._arm(motion)
         effort = [*self._tip_force(along), self.tip.moment * self.tip.share(self.time)]
         place = [*(motion.q[-1, :2] + arm), motion.q[-1, 2]]
@@ -127,10 +126,19 @@ class Loads:
             force=self.force.copy(),
             effort=np.array(effort),
             place=np.array(place),
-            elastic=0.5 * self.tip.clamp * bend**2,
-            stored=self.discs.energy + self._sleeve_energy,
-            tip_reaction=tip_reaction,
+            elastic=0.5 * self.tip.clamp * bend**2 + 0.5 * float(self.tip.held @ self._astray(motion) ** 2),
+            stored=self.discs.energy,
         )
+
+    def hold_force(self, motion: Motion) -> Floats:
+        """(2,), N: of what holds the tip on the wire."""
+        force: Floats = -self.tip.held * self._astray(motion)
+        return force
+
+    def _astray(self, motion: Motion) -> Floats:
+        """(2,), m: how far the tip is from the place where it is held."""
+        away: Floats = motion.q[-1, :2] + self._arm(motion) - self.tip.at
+        return away
 
     def _along(self, motion: Motion) -> Floats:
         return np.array([motion.c[-1], motion.s[-1]])
@@ -150,66 +158,22 @@ class Loads:
         tip, half, share = self.tip, float(self._half[-1]), self.tip.share(self.time)
         along = self._along(motion)
         c, s = along
-        force = self._tip_force(along)
+        force = self._tip_force(along) + self.hold_force(motion)
         axial, transverse = share * tip.follower
         bend = float(motion.q[-1, 2]) + tip.rest
         self.force[-1, :2] += force
         self.force[-1, 2] += share * tip.moment + half * (c * force[1] - s * force[0]) - tip.clamp * bend
         self.tangent[-1, 0, 2] += -axial * s - transverse * c
         self.tangent[-1, 1, 2] += axial * c - transverse * s
-        # A follower's lever turns with it, so only the dead load turns the segment the more the further it has turned.
+        # A follower's lever turns with it, so only the other loads turn the segment the more the further it has turned.
         self.tangent[-1, 2, 2] += half * (axial - along @ force) - tip.clamp
-
-    def _add_sleeve(self, motion: Motion) -> None:
-        """Two-sided springs on the nodes behind the exit, and at the exit on the segment that passes it."""
-        stiffness, half = self._sleeve_stiffness, self._half
-        before = self.force[:, :2].sum(axis=0)
-        self._sleeve_energy = self.sleeve_normal = 0.0
-        fade = half / 2
-        x, y = motion.q[:, 0] + half * motion.c, motion.q[:, 1] + half * motion.s
-        for body in np.flatnonzero(x < 0):
-            part = min(-float(x[body]) / float(fade[body]), 1.0)
-            share, slope = part * part * (3 - 2 * part), -6 * part * (1 - part) / float(fade[body])
-            self._add_node_spring(motion, int(body), float(y[body]), stiffness * share, stiffness * slope)
-        local = -(motion.q[:, 0] * motion.c + motion.q[:, 1] * motion.s)
-        passing = np.flatnonzero(np.abs(local) <= half)
-        if len(passing):
-            self._add_exit_spring(motion, int(passing[-1]), stiffness)
-        self.sleeve_force = self.force[:, :2].sum(axis=0) - before
-
-    def _add_node_spring(self, motion: Motion, body: int, y: float, stiffness: float, slope: float) -> None:
-        """On the distal node: energy stiffness y^2 / 2, where the stiffness falls off with x by `slope`, N/m^2."""
-        c, s, half = float(motion.c[body]), float(motion.s[body]), float(self._half[body])
-        along_x, along_y = np.array([1.0, 0.0, -half * s]), np.array([0.0, 1.0, half * c])
-        fx, fy = -0.5 * slope * y * y, -stiffness * y
-        self.force[body] += fx * along_x + fy * along_y
-        block = self.tangent[body]
-        block -= stiffness * np.outer(along_y, along_y)
-        block -= slope * y * (np.outer(along_x, along_y) + np.outer(along_y, along_x))
-        block[2, 2] -= half * (fx * c + fy * s)
-        self._sleeve_energy += 0.5 * stiffness * y * y
-        self.sleeve_normal += abs(fy)
-
-    def _add_exit_spring(self, motion: Motion, body: int, stiffness: float) -> None:
-        """Energy stiffness v^2 / 2, v the offset of the exit's middle from the segment's axis."""
-        c, s = float(motion.c[body]), float(motion.s[body])
-        qx, qy = float(motion.q[body, 0]), float(motion.q[body, 1])
-        along, across = -qx * c - qy * s, qx * s - qy * c
-        gradient = np.array([s, -c, -along])
-        self.force[body] -= stiffness * across * gradient
-        block = self.tangent[body]
-        block -= stiffness * np.outer(gradient, gradient)
-        turn = stiffness * across * np.array([c, s])
-        block[:2, 2] -= turn
-        block[2, :2] -= turn
-        block[2, 2] += stiffness * across * across
-        self._sleeve_energy += 0.5 * stiffness * across**2
-        self.sleeve_normal += abs(stiffness * across)
+        x, y = np.array([1.0, 0.0, -half * s]), np.array([0.0, 1.0, half * c])
+        self.tangent[-1] -= tip.held[0] * np.outer(x, x) + tip.held[1] * np.outer(y, y)
 
 
 def build_loads(scenario: Scenario, wire: Wire, frame: Frame) -> LoadSet:
     """The loads of a scenario, in the catheter's frame."""
-    return LoadSet(_tip_load(scenario, wire, frame), _discs(scenario, frame), scenario.catheter.bore == 0.0)
+    return LoadSet(_tip_load(scenario, wire, frame), _discs(scenario, frame))
 
 
 def _tip_load(scenario: Scenario, wire: Wire, frame: Frame) -> TipLoad:
@@ -217,12 +181,15 @@ def _tip_load(scenario: Scenario, wire: Wire, frame: Frame) -> TipLoad:
     near, far = np.zeros(1), np.array([half])
     held = tip.hold != "free"
     clamped = tip.hold == "clamped"
+    piece = scenario.wire.bending_stiffness[0]
+    stiffness = _ROUND * piece.value / scenario.wire.diameter**2 / wire.length
     return TipLoad(
         dead=frame.vectors_in(tip.force),
         follower=np.array(tip.follower_force),
         moment=tip.moment,
         ramp=tip.ramp,
-        held=(held and tip.slides != "along", held and tip.slides != "across"),
+        held=stiffness * np.array([held and tip.slides != "along", held and tip.slides != "across"]),
+        at=np.array([scenario.drive.start, 0.0]),
         clamp=1 / float(compliance(scenario.wire.bending_stiffness, near, far)[0]) if clamped else 0.0,
         rest=float(rest_angles(scenario.wire, near, far)[0]) if clamped else 0.0,
     )

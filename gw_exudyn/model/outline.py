@@ -19,8 +19,8 @@ Floats = NDArray[np.float64]
 class Outline:
     """A closed outline with the lumen on its left.
 
-    points : (m, 2), m, counter-clockwise, the first not repeated; none at all without a vessel. open_edges : indices of the edges (point i to i + 1)
-        that are open ends and no walls.
+    points : (m, 2), m, counter-clockwise, the first not repeated; none at all without a vessel. open_edges : indices
+        of the edges (point i to i + 1) that are open ends and no walls.
     """
 
     points: Floats

@@ -10,16 +10,12 @@ from gw_exudyn.model.wire import Wire
 
 Floats = NDArray[np.float64]
 
-_HELD = 1e6
-"""Stiffness of what holds the tip, over that of the stiffest joint at a segment's length."""
-
 
 def negative_pivots(
     wire: Wire,
     motion: Motion,
     blocks: Floats,
     joint_stiffness: Floats,
-    held: tuple[bool, bool],
     *,
     base_moves: bool,
 ) -> int:
@@ -29,13 +25,11 @@ def negative_pivots(
     inertia); of an unsymmetric one its parity is the sign of the determinant.
 
     blocks : (n, 3, 3), minus the derivative of the force on each body, its joints' forces (which turn with it) and
-        inertia included. joint_stiffness : (n,), N m/rad, of the joint proximal to each body. held : whether the tip's
-        place is fixed along and across the catheter's axis. base_moves : the proximal end is free to move across it.
+        inertia included. joint_stiffness : (n,), N m/rad, of the joint proximal to each body.
+    base_moves : the proximal end is free to move across the catheter's axis.
     """
-    fixed = _HELD * float((joint_stiffness / wire.lengths**2).max())
     # Stiffness of the part beyond a joint, by the joint's place and the angle of the segment before it.
-    xx, yy, xy, yx = fixed * held[0], fixed * held[1], 0.0, 0.0
-    xa = ya = ax = ay = aa = 0.0
+    xx = xy = yx = yy = xa = ya = ax = ay = aa = 0.0
     own = _about_proximal_end(wire, motion, blocks).reshape(-1, 9).tolist()
     levers = (wire.lengths[:, None] * np.column_stack([-motion.s, motion.c])).tolist()
     springs = joint_stiffness.tolist()

@@ -176,21 +176,6 @@ class Quantity(Kind):
 
 
 @dataclass(frozen=True)
-class Bore(Quantity):
-    """An inner diameter, the word `sleeve` (no clearance at all, read as 0), or nothing at all (no tube)."""
-
-    def read(self, value: Any) -> float | None:
-        """The diameter, m; 0 for a sleeve."""
-        if value is None or value == "sleeve":
-            return None if value is None else 0.0
-        return super().read(value)
-
-    def json(self) -> dict[str, Any]:
-        """A quantity or the word."""
-        return {"anyOf": [*super().json()["anyOf"], {"const": "sleeve"}, {"type": "null"}]}
-
-
-@dataclass(frozen=True)
 class Number(Kind):
     """A number without a unit, from `low` to `high`, both allowed."""
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from gw_exudyn.scenario.fields import Bore, Number, Quantity, Row, Table
+from gw_exudyn.scenario.fields import Number, Quantity, Row, Table
 
 FULL_TURN = 2 * math.pi
 
@@ -28,7 +28,7 @@ ARC_RADIUS = Quantity("m", 0.1e-3, 5.0, "mm")
 ANGLE = Quantity("rad", -FULL_TURN, FULL_TURN, "deg")
 COORDINATE = Quantity("m", -10.0, 10.0, "mm")
 POINT = Row(("x", "y"), (COORDINATE, COORDINATE))
-BORE = Bore("m", 0.05e-3, 50e-3, "mm")
+BORE = Quantity("m", 0.05e-3, 50e-3, "mm", optional=True)
 
 FORCE = Quantity("N", -1e3, 1e3, "mN")
 MOMENT = Quantity("N*m", -1e3, 1e3, "N*mm")

@@ -46,8 +46,7 @@ class CatheterSpec(Section):
     """The straight, fixed tube that holds the proximal part of the wire; the tip starts at its exit.
 
     exit : (x, y), m. direction : rad, of the axis, pointing into the vessel, from +x to the left. bore : m, inner
-        diameter; 0 for a sleeve without clearance or friction; None where there is no tube and only the drive holds the
-        wire.
+        diameter; None where there is no tube and only the drive holds the wire.
     friction_coefficient : None takes the contact's.
     """
 
@@ -61,16 +60,12 @@ class CatheterSpec(Section):
     )
     bore: Annotated[float | None, BORE] = Field(
         default=None,
-        description="inner diameter; sleeve: no clearance and no friction; may be left out where the vessel is none",
+        description="inner diameter; may be left out where the vessel is none: there is no tube then",
         examples=["1.2 mm"],
     )
     friction_coefficient: Annotated[float | None, FRICTION_OR_NONE] = Field(
         default=None, description="friction in it; the contact's if not given"
     )
-
-    def to_plain(self) -> dict[str, Any]:
-        """The catheter as a file could hold it."""
-        return super().to_plain() | ({"bore": "sleeve"} if self.bore == 0.0 else {})
 
 
 class ContactSpec(Section):

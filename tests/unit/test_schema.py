@@ -176,12 +176,14 @@ def test_numpy_numbers_are_numbers() -> None:
         ({"contact.regularisation_speed": 1}, ["contact.regularisation_speed: unknown key; allowed: "
                                                "friction_coefficient, wall_stiffness, "
                                                "wall_damping, tangential_stiffness"]),
-        ({"vessel.kind": "branches"}, ["vessel.kind: 'branches' is not built yet; allowed: straight, arc, polygon"]),
+        ({"vessel.kind": "branches"}, ["vessel.kind: 'branches' is not built yet; allowed: "
+                                        "straight, arc, polygon, none"]),
         ({"vessel.kind": "strait"}, ["vessel.kind: 'strait' is not known here; did you mean 'straight'? allowed: "
-                                     "straight, arc, polygon"]),
-        ({"vessel.kind": REMOVE}, ["vessel.kind: is missing: what the vessel is; allowed: straight, arc, polygon"]),
+                                     "straight, arc, polygon, none"]),
+        ({"vessel.kind": REMOVE}, ["vessel.kind: is missing: what the vessel is; allowed: "
+                                  "straight, arc, polygon, none"]),
         ({"vessel": 3}, ["vessel: 3 stands where a vessel is needed: lines of 'key: value', the first kind: straight "
-                         "| arc | polygon"]),
+                         "| arc | polygon | none"]),
         ({"vessel.end": "closed"}, ["vessel.end: 'closed' is not known here; allowed: open, dead"]),
         ({"vessel.length": REMOVE}, ["vessel.length: is missing: length along x; for example length: 100 mm"]),
         ({"vessel": {"kind": "arc", "radius": "2 mm", "angle": "90 deg", "diameter": "4 mm"}},
