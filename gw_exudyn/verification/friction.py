@@ -51,7 +51,7 @@ def circular_channel() -> Finding:
             float(limit),
             exact,
             0.005 * exact,
-            "the force ripples by 8 % as segments of 1 mm pass facets of 1 deg; half a per cent of it is left on average",
+            "the force ripples by 8 % as joints and facets pass; the mean is 0.1 % off, more with other facets",
             "EI/(2 R^2), the bending energy that a length takes in",
         )
     )
@@ -202,9 +202,9 @@ def stick_and_slip() -> Finding:
     creep = float(held.values("tip_y")[-1]) - float(np.interp(ramp / 4, held.time, held.values("tip_y")))
     rising = _on_a_wall(friction, 2 * friction * normal, ramp)
     moved, load = rising.values("tip_y"), 2 * friction * normal * rising.time / ramp
-    slipping = float(np.interp(_SLIPPED, moved, load))
-    ratio = abs(rising.values("wall_force_tangential")[-1]) / rising.values("wall_force_normal")[-1]
-    limit = friction * float(np.interp(slipping, load, rising.values("wall_force_normal")))
+    # Once it goes it runs: bent, the wire reaches less far, and presses less.
+    first = int(np.argmax(moved > _SLIPPED))
+    slipping, limit = float(load[first]), friction * float(rising.values("wall_force_normal")[first - 1])
     rows = (
         Evidence(
             "way in 10 s under mu N / 2",
@@ -222,23 +222,14 @@ def stick_and_slip() -> Finding:
             slipping,
             limit,
             0.01 * limit,
-            "the wire's own stiffness, 3 EI/L^3, takes 0.2 % at 5 um",
+            "the wire's own stiffness, 3 EI/L^3, takes 0.2 % at 5 um, and the load rises by 0.1 % between outputs",
             "mu N",
         ),
-        Evidence(
-            "tangential over normal force while it slips",
-            "1",
-            float(ratio),
-            friction,
-            1e-3 * friction,
-            "forces of one step, to the solver's tolerance",
-            "Coulomb",
-        ),
     )
+    shown = moved < 4 * _SLIPPED
     curves = (
-        Curve("rising load", load / limit, moved * 1e6, "points"),
-        Curve("mu N", np.array([1.0, 1.0]), np.array([0.0, float(moved.max())]) * 1e6, "line"),
-        Curve("slope of the wire alone", 1 + np.array([0.0, 1.0]), np.array([0.0, limit / _WIRE * 1e6]), "line"),
+        Curve("rising load", load[shown] / limit, moved[shown] * 1e6),
+        Curve("mu N", np.array([1.0, 1.0]), np.array([0.0, 4 * _SLIPPED]) * 1e6, "line"),
     )
     chart = Chart(
         "stick-and-slip", "Tip pressed on a wall, pulled along it", "load / mu N", "way of the tip / um", curves
@@ -247,8 +238,7 @@ def stick_and_slip() -> Finding:
 
 
 _SLIPPED, _FREE = 5e-6, 20e-3
-_WIRE = 3 * _STIFFNESS / _FREE**3
-"""N/m, of the wire's tip across, at a free length of 20 mm."""
+"""m: way by which it has slipped; free length of the wire."""
 
 
 def _on_a_wall(friction: float, load: float, ramp: float, seconds: float | None = None) -> Result:
@@ -260,10 +250,10 @@ def _on_a_wall(friction: float, load: float, ramp: float, seconds: float | None 
             {"length": 0.04, "bending_stiffness": _STIFFNESS, "segments": 40},
             {"kind": "speed", "phases": phases, "start": _FREE - DIAMETER / 2 - 4e-6},
             vessel={"kind": "straight", "length": _FREE + 2e-3, "diameter": 8e-3, "end": "dead"},
-            catheter={"exit": [2e-3, 0.0], "bore": "sleeve"},
+            catheter={"exit": [2e-3, 0.0], "bore": 0.5e-3, "friction_coefficient": 0.0},
             contact={"friction_coefficient": friction, "wall_stiffness": 2000.0},
             tip={"force": [0.0, load], "ramp": ramp},
-            output={"interval": 0.05},
+            output={"interval": 0.01},
         )
     )
 
@@ -295,11 +285,13 @@ def signs() -> Finding:
     work = float(np.abs(result.values("insertion_work")).max())
     over = float(np.nanmax(tangential - 0.4 * pressing))
     least = float(np.nanmin(pressing))
+    strongest = float(np.nanmax(tangential[pressing > 1e-4] / pressing[pressing > 1e-4]))
     rows = (
         Evidence("least normal force", "N", least, 0.0, 0.0, "exact", "a wall does not pull", "at_least"),
         Evidence(
             "largest tangential force above mu times normal", "N", over, 1e-12, 0.0, "rounding", "Coulomb", "at_most"
         ),
+        Evidence("tangential over normal force of what slides", "1", strongest, 0.4, 1e-9, "rounding", "Coulomb"),
         Evidence(
             "least rise of the friction loss between outputs",
             "J",

@@ -127,8 +127,8 @@ def chain_formula() -> Finding:
 def buckling() -> Finding:
     """Critical load of the column clamped at one end: where the deflection of a nearly straight one has its pole.
 
-    Of a wire with a small rest curvature c the deflection is c (sec kL - 1) / k^2, k^2 = P/EI: its inverse goes smoothly
-    through zero at the critical load.
+    Of a wire with a small rest curvature c the deflection is c (sec kL - 1) / k^2, k^2 = P/EI: its inverse goes
+    smoothly through zero at the critical load.
     """
     rows, curves = [], []
     source = "4 k/l sin^2(pi/4n), Hencky's chain; pi^2 EI/(4 L^2) for n to infinity"

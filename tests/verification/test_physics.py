@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from gw_exudyn.verification import second_opinion
+from gw_exudyn.verification import convergence, friction, second_opinion, statics
 from gw_exudyn.verification.evidence import Case
 
-CASES = [*second_opinion.CASES]
+CASES = [*statics.CASES, *friction.CASES, *convergence.CASES, *second_opinion.CASES]
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.group}: {case.name}")
