@@ -5,9 +5,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from scipy.optimize import brentq
-from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
-
 
 class Bent(NamedTuple):
     """Tip of a bent cantilever: deflection across and shortening along its straight axis over the length, and slope,
@@ -20,6 +17,9 @@ class Bent(NamedTuple):
 
 def cantilever_under_dead_load(load: float) -> Bent:
     """A cantilever under a tip force square to its straight axis. load : P L^2 / EI [Bisshopp and Drucker 1945]."""
+    from scipy.optimize import brentq
+    from scipy.special import ellipe, ellipeinc, ellipk, ellipkinc
+
     root = math.sqrt(load)
 
     def parts(slope: float) -> tuple[float, float, float]:
@@ -45,6 +45,8 @@ class Buckled(NamedTuple):
 
 def buckled_column(tip_angle: float) -> Buckled:
     """The elastica beyond buckling, by the angle to which its tip has turned [Timoshenko and Gere 1961, 2.7]."""
+    from scipy.special import ellipe, ellipk
+
     k = math.sin(tip_angle / 2)
     whole, second = float(ellipk(k * k)), float(ellipe(k * k))
     return Buckled((2 * whole / math.pi) ** 2, 2 * second / whole - 1, 2 * k / whole)
@@ -100,5 +102,7 @@ def three_point_stiffness(span: float, steps: list[tuple[float, float, float]]) 
 
 def vibration_frequency(stiffness: float, length: float, mass: float) -> float:
     """Hz, lowest, of a cantilever. mass : kg, of the whole [Euler-Bernoulli: 1.8751^2]."""
+    from scipy.optimize import brentq
+
     root = float(brentq(lambda x: math.cos(x) * math.cosh(x) + 1, 1.5, 2.5, xtol=1e-14))
     return root**2 / (2 * math.pi) * math.sqrt(stiffness / (mass * length**3))

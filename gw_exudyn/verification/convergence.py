@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from gw_exudyn.simulation import Simulation, simulate
 from gw_exudyn.verification.closed_forms import cantilever_under_dead_load, vibration_frequency
 from gw_exudyn.verification.evidence import Case, Chart, Curve, Evidence, Finding
-from gw_exudyn.verification.scenes import DIAMETER, SPEED, alone, corner_vessel, scene
+from gw_exudyn.verification.scenes import DIAMETER, SPEED, alone, corner_vessel, scene, soft_tip
 
 Floats = NDArray[np.float64]
 
@@ -214,16 +214,14 @@ def segments_in_insertion() -> Finding:
 def _bend60(segments: int) -> tuple[float, float, float]:
     """Tip, m, and push force, N, of the benchmark after 20 mm."""
     length, near, far, stretch, width = 0.150, 1e-6, 1e-4, 45e-3, 4e-3
-    places = np.linspace(0.0, stretch, 181)
-    table = [[float(s), near * (far / near) ** (float(s) / stretch)] for s in places]
     result = simulate(
         scene(
-            {"length": length, "bending_stiffness": {"table": [*table, [length, far]]}, "segments": segments},
+            {"length": length, "bending_stiffness": soft_tip(near, far, stretch, length), "segments": segments},
             {"kind": "speed", "speed": SPEED, "duration": 10.0},
             vessel=corner_vessel(width),
             catheter={"exit": [-5e-3, 0.0], "bore": width},
             contact={"friction_coefficient": 0.4, "wall_stiffness": 2000.0},
-            solver={"step": 0.05},
+            solver={"step": 0.1},
             output={"interval": 10.0},
         )
     )

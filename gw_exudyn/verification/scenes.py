@@ -29,6 +29,13 @@ def alone(
     return scene(wire, still, vessel={"kind": "none"}, catheter={}, output={"interval": seconds}, **sections)
 
 
+def soft_tip(near: float, far: float, stretch: float, length: float) -> dict[str, Any]:
+    """Bending stiffness whose logarithm rises linearly from the tip over a stretch (m), then is uniform. N m^2."""
+    places = np.linspace(0.0, stretch, 181)
+    table = [[float(s), near * (far / near) ** (float(s) / stretch)] for s in places]
+    return {"table": [*table, [length, far]]}
+
+
 def corner_vessel(width: float) -> dict[str, Any]:
     """A channel along x that turns left by 60 degrees at the origin."""
     half, turn, before, after = width / 2, math.radians(60), -0.2, 0.06

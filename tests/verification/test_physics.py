@@ -14,6 +14,7 @@ CASES = [*statics.CASES, *friction.CASES, *convergence.CASES, *second_opinion.CA
 def test_every_row_holds(case: Case) -> None:
     rows = case.find().rows
     assert rows
+    assert len({row.quantity for row in rows}) == len(rows), "two rows of one name"
     failed = [
         f"{r.quantity}: {r.measured:.9g}, {r.rule} {r.tolerance:.3g} of {r.expected:.9g}" for r in rows if not r.holds
     ]
