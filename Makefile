@@ -6,12 +6,14 @@ BIN := $(VENV)/bin
 RUNS := results/runs
 WIRES := corner90-universal corner90-amplatz
 
-.PHONY: help run test lint format kernels wrappers clean
+.PHONY: help run test verify mutate lint format kernels wrappers clean
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make run      simulate both wires round the corner and draw them side by side"
 	@echo "make test     run the test suite"
+	@echo "make verify   show and write the evidence that the physics is right"
+	@echo "make mutate   make errors in the physics on purpose, and see that tests notice each"
 	@echo "make lint     check style and types"
 	@echo "make format   put the code into its format"
 	@echo "make kernels  build the contact kernel for all platforms"
@@ -26,6 +28,12 @@ run: $(VENV)/.ready
 
 test: $(VENV)/.ready-dev
 	$(BIN)/python -m pytest
+
+verify: $(VENV)/.ready
+	$(BIN)/gw-exudyn verify
+
+mutate: $(VENV)/.ready-dev
+	$(BIN)/python tests/mutation/mutate.py
 
 lint: $(VENV)/.ready-dev
 	$(BIN)/ruff check .

@@ -8,11 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gw_exudyn.quantities import QUANTITIES
+from gw_exudyn.quantities import CONTACT_OWNERS, QUANTITIES
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from gw_exudyn.result import Floats, Result
 
+VESSEL = next(value for value, word in CONTACT_OWNERS if word == "vessel")
 
 LEAST_WORK = 1e-7
 """Largest work, J, below which an energy error is not measured on it; the floor of the trust check."""
@@ -29,7 +32,14 @@ class Metric:
 
 def metrics(result: Result) -> dict[str, Metric]:
     """Metrics of a run by name, in the order in which a table shows them."""
-    return {**_tip(result), **_forces(result), **_contact(result), **_energy(result), **_solution(result)}
+    return {
+        **_tip(result),
+        **_guidance(result),
+        **_forces(result),
+        **_contact(result),
+        **_energy(result),
+        **_solution(result),
+    }
 
 
 def _tip(result: Result) -> dict[str, Metric]:
@@ -40,6 +50,60 @@ def _tip(result: Result) -> dict[str, Metric]:
         float(np.nansum(path)), QUANTITIES["tip_x"].unit, "length of the path of the tip, there and back"
     )
     return found
+
+
+BLOCKED = 0.05
+"""The tip counts as blocked where it moves less than this share of what the wire is pushed in."""
+
+
+def _guidance(result: Result) -> dict[str, Metric]:
+    """How the tip follows the hand: over the time in which the wire is pushed in, from output to output."""
+    pushed = np.diff(result.values("insertion_depth"))
+    step = np.column_stack([np.diff(result.values("tip_x")), np.diff(result.values("tip_y"))])
+    angle = result.values("tip_angle")
+    heading = (angle[:-1] + angle[1:]) / 2
+    ahead = step[:, 0] * np.cos(heading) + step[:, 1] * np.sin(heading)
+    moved = np.hypot(*step.T)
+    inwards = pushed > 0
+    length = QUANTITIES["tip_x"].unit
+    pushed_in = float(np.nansum(pushed[inwards]))
+    retreat = _largest_fall(np.nancumsum(np.where(inwards, ahead, 0.0)))
+    diameter = result.scenario.wire.diameter
+    return {
+        "trackability": Metric(
+            float(np.nansum(moved[inwards])) / pushed_in if pushed_in > 0 else float("nan"),
+            "1",
+            "path of the tip over the length pushed in, while pushing; none where nothing was pushed",
+        ),
+        "tip_retreat_max": Metric(
+            retreat, length, "furthest that the tip went back along its own direction while the wire was pushed in"
+        ),
+        "prolapse": Metric(
+            float(retreat > diameter), "1", "1 where the tip went back by more than the wire's diameter while pushed"
+        ),
+        "pushability": Metric(
+            _pushability(result, inwards & (moved < BLOCKED * np.where(inwards, pushed, 0.0))),
+            "1",
+            f"rise of the tip force over rise of the push force while the tip is blocked (it moves less than "
+            f"{BLOCKED:g} of what is pushed in); none where it never is",
+        ),
+    }
+
+
+def _largest_fall(progress: Floats) -> float:
+    """Largest fall of a curve from what it had reached before; 0 for one that never falls."""
+    reached = np.maximum.accumulate(np.concatenate([[0.0], progress]))
+    return float(np.max(reached[1:] - progress, initial=0.0))
+
+
+def _pushability(result: Result, blocked: NDArray[np.bool_]) -> float:
+    """Slope of tip force over push force by least squares over the outputs between which the tip is blocked."""
+    there = np.concatenate([blocked, [False]]) | np.concatenate([[False], blocked])
+    push, tip = result.values("push_force")[there], result.values("tip_force")[there]
+    finite = np.isfinite(push) & np.isfinite(tip)
+    push, tip = push[finite] - push[finite].mean() if finite.any() else push[finite], tip[finite]
+    spread = float(push @ push)
+    return float(push @ tip / spread) if len(push) > 2 and spread > 0 else float("nan")
 
 
 def _forces(result: Result) -> dict[str, Metric]:
@@ -64,7 +128,25 @@ def _forces(result: Result) -> dict[str, Metric]:
     found: dict[str, Metric] = {}
     for name, (peak, values, meaning, remark) in cases.items():
         found |= _with_time(result, name, peak, values, QUANTITIES["push_force"].unit, meaning, remark)
-    return found
+    return found | _place_of_largest_force(result)
+
+
+def _place_of_largest_force(result: Result) -> dict[str, Metric]:
+    """Where the vessel was pressed hardest, at the output that shows it (of a peak between two, the nearest)."""
+    force = np.hypot(result.values("contact_normal_force"), result.values("contact_tangential_force"))
+    of_vessel = result.values("contact_owner") == VESSEL
+    force = np.where(of_vessel & np.isfinite(force), force, -np.inf)
+    instant, contact = np.unravel_index(int(np.argmax(force)), force.shape)
+    touched = np.isfinite(force[instant, contact])
+    places = {"x": "contact_x", "y": "contact_y", "arc_length": "contact_arc_length"}
+    return {
+        f"wall_force_max_{name}": Metric(
+            float(result.values(field)[instant, contact]) if touched else float("nan"),
+            QUANTITIES[field].unit,
+            f"{QUANTITIES[field].long_name}, of the largest force of a single contact, at the outputs",
+        )
+        for name, field in places.items()
+    }
 
 
 def _contact(result: Result) -> dict[str, Metric]:
@@ -85,7 +167,7 @@ def _contact(result: Result) -> dict[str, Metric]:
 
 def _energy(result: Result) -> dict[str, Metric]:
     error, _ = _peak(np.abs(result.values("energy_error")), result.time)
-    work, _ = _peak(np.abs(result.values("insertion_work")), result.time)
+    work, _ = _peak(np.abs(result.values("insertion_work") + result.values("load_work")), result.time)
     released = [snap.released_energy for snap in result.snaps]
     unit = QUANTITIES["energy_error"].unit
     return {

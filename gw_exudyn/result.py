@@ -50,6 +50,18 @@ class Status(Enum):
         "The energies do not add up to within 1 % of the largest work. Lower solver.step and solver.tolerance."
     )
 
+    TIP_STALLED = (
+        "The tip stayed where it was while the wire was pushed in: a dead end, a jam, or a wire that buckles or "
+        "prolapses in a wide lumen. "
+        "To go on all the same, set stop.tip_stall to off or to a longer travel."
+    )
+    FORCE_LIMIT = "The push force exceeded its limit. To go on, raise stop.push_force or leave it out."
+    TARGET_REACHED = "The tip reached its target. To go on from there, set stop.at_target to false."
+    END_OF_TRAVEL = (
+        "The hub reached the end of its travel: further on, the wire's end would leave its guide in the catheter. "
+        "Take a longer wire (wire.length), or a drive that ends earlier or is weaker."
+    )
+
     @property
     def ok(self) -> bool:
         """The run reached its end and nothing is wrong with it."""
@@ -57,8 +69,13 @@ class Status(Enum):
 
     @property
     def trusted(self) -> bool:
-        """What was computed can be believed; true also for a run that somebody stopped early."""
-        return self in (Status.COMPLETED, Status.STOPPED)
+        """What was computed can be believed; true also for a run that somebody or an event ended early."""
+        return self in (Status.COMPLETED, Status.STOPPED) or self.is_event
+
+    @property
+    def is_event(self) -> bool:
+        """The run ended before its drive did, for a reason of its own that is an outcome and no failure."""
+        return self in (Status.TIP_STALLED, Status.FORCE_LIMIT, Status.TARGET_REACHED, Status.END_OF_TRAVEL)
 
     @property
     def problem(self) -> str:

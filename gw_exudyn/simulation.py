@@ -7,6 +7,7 @@ import json
 import math
 import time as clock
 from collections.abc import Callable, Mapping
+from dataclasses import astuple
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
@@ -16,9 +17,11 @@ from numpy.typing import NDArray
 from gw_exudyn.engine.state import from_arrays, pack, to_arrays, unpack
 from gw_exudyn.engine.stepper import Peaks, Stepper
 from gw_exudyn.errors import UsageError
+from gw_exudyn.events import Anchor, Watch
 from gw_exudyn.model import Model, build
 from gw_exudyn.model.contact import NOWHERE
-from gw_exudyn.model.drive import Drive
+from gw_exudyn.model.drive import AnyDrive, Drive, Force
+from gw_exudyn.model.tip_speed import TipSpeed
 from gw_exudyn.result import Result, Status, StatusReport
 from gw_exudyn.sampling import sample
 from gw_exudyn.trust import energy_report, snap_events, trust_report
@@ -42,11 +45,13 @@ class Simulation:
         self.scenario = scenario
         self.model: Model = build(scenario)
         self._stepper = Stepper(self.model)
+        self._watch = Watch(self._stepper)
         self._stopped: StatusReport | None = None
 
     def reset(self) -> None:
         """Back to the start of the scenario, with the scenario's own drive."""
         self._stepper.reset()
+        self._watch.reset()
         self._stopped = None
 
     @property
@@ -61,13 +66,24 @@ class Simulation:
 
     @property
     def status(self) -> StatusReport:
-        """Whether what was run so far can be trusted; if not, what failed, when and where."""
-        return self._stopped or energy_report(self._stepper) or StatusReport(Status.STOPPED, self.time)
+        """Whether what was run so far can be trusted; if not, what failed, when and where. An event that has ended the
+        run is told here too."""
+        return self._ended_as(Status.STOPPED)
+
+    @property
+    def ended(self) -> bool:
+        """The run has ended by itself, by an event or a failure, and takes no more steps; `status` says why."""
+        return self._stopped is not None
 
     @property
     def failed(self) -> bool:
-        """The run cannot go on."""
-        return self._stopped is not None
+        """The run has ended and cannot be trusted."""
+        return self._stopped is not None and not self._stopped.status.trusted
+
+    def _ended_as(self, otherwise: Status) -> StatusReport:
+        """A failure before all, then energies that do not add up, then an event."""
+        failure = self._stopped if self.failed else None
+        return failure or energy_report(self._stepper) or self._stopped or StatusReport(otherwise, self.time)
 
     @property
     def penetration(self) -> float:
@@ -85,31 +101,34 @@ class Simulation:
         contacts."""
         return MappingProxyType(sample(self._stepper))
 
-    def step(self, dt: float, *, speed: float | None = None) -> Mapping[str, Any]:
+    def step(self, dt: float, *, speed: float | None = None, force: float | None = None) -> Mapping[str, Any]:
         """Go on by dt and return the outputs there.
 
         dt : s, positive; any length, it need not fit the solver's step: results do not depend on how time is cut into
             calls.
-        speed : m/s of the drive from now on, positive into the vessel; None keeps what drives it now (at first the
+        speed : m/s of the drive from now on, positive into the vessel; with a tip_speed drive the wanted speed of the
+            tip. force : N on the hub from now on, with a force drive. None keeps what drives it now (at first the
             scenario's own drive).
 
-        When the run cannot go on, it ends early: `status` then says why, and `outputs` are those of the step that
-        showed it.
-        Raises UsageError for a step that is not positive, a speed that is no number, or a run that has failed before.
+        When the run cannot go on, or an event ends it (see the scenario's `stop`), it ends early: `status` then says
+        why, and `outputs` are those of the step that showed it.
+        Raises UsageError for a step that is not positive, a speed or force that is no number or that this drive does
+        not take, or a run that has ended before.
         """
         if not (_is_number(dt) and dt >= _SHORTEST):
             raise UsageError(f"a step of {dt!r} s cannot be taken; it must be positive, {_SHORTEST:g} s at least")
         # Rounded, so that the sum of many small steps is the same time as one large step.
         target = round(self.time + dt, 12)
-        if speed is not None:
-            self._take_over(speed, target)
+        for given, value in (("speed", speed), ("force", force)):
+            if value is not None:
+                self._take_over(given, value, target)
         self.advance(target)
         return self.outputs
 
     def advance(self, target: float) -> bool:
-        """Run to the time `target`, s; False when the run failed on the way (see `status`).
+        """Run to the time `target`, s; False when the run ended on the way, by an event or a failure (see `status`).
 
-        Raises UsageError for a run that has failed before, and for a drive that would take the wire's end out of the
+        Raises UsageError for a run that has ended before, and for a drive that would take the wire's end out of the
         catheter on the way; nothing has moved then.
         """
         if not _is_number(target):
@@ -121,28 +140,47 @@ class Simulation:
             # One nominal step at a time, so that a run that went wrong is stopped there and not at the end.
             self._stepper.deepest = NOWHERE
             reached = self._stepper.advance(min(target, self._stepper.next_grid_time()))
-            self._stopped = trust_report(self._stepper, converged=reached)
+            self._stopped = self._what_ends_it(reached)
             if self._stopped is not None:
                 return False
         return True
 
-    def _check_travel(self, drive: Drive, target: float) -> None:
-        """The drive keeps the proximal end in the catheter: in the table it was checked before, after it is here."""
-        position, wire = drive.position_at(target), self.model.wire.length
-        furthest_back = wire - self.model.tube.length
-        if not furthest_back < position < wire:
+    def _what_ends_it(self, reached: bool) -> StatusReport | None:
+        """Failures first: an event counts only where what was computed can be trusted."""
+        failure = trust_report(self._stepper, converged=reached)
+        if failure is not None:
+            unsolved = failure.status is Status.NOT_CONVERGED
+            return (self._watch.out_of_travel() if unsolved else None) or failure
+        return self._watch.look() if self._stepper.on_grid else None
+
+    def _check_travel(self, drive: AnyDrive, target: float) -> None:
+        """A prescribed speed keeps the proximal end in the catheter: in the table it was checked before, after it is
+        here."""
+        if not isinstance(drive, Drive):
+            return  # how far it goes is not known before; its run ends at the end of the travel
+        position, (furthest_back, wire) = drive.position_at(target), self.model.travel_range
+        if not furthest_back < position <= wire:
             raise UsageError(
                 f"at {target:.6g} s the drive would be at {position * 1e3:.6g} mm, and the wire of {wire * 1e3:.6g} mm "
                 f"is guided from {furthest_back * 1e3:.6g} mm to its length only; take another speed or a shorter step"
             )
 
-    def _take_over(self, speed: float, target: float) -> None:
-        if not _is_number(speed):
-            raise UsageError(f"a speed of {speed!r} m/s cannot be driven; it must be a finite number")
+    def _take_over(self, given: str, value: float, target: float) -> None:
+        """Checked first: what is refused has changed nothing. given : "speed" or "force"."""
+        unit = "m/s" if given == "speed" else "N"
         stepper = self._stepper
-        if stepper.drive.taken_over is None or stepper.drive.taken_over[2] != speed:
-            self._check_travel(stepper.drive.taken_over_at(self.time, speed), target)
-            stepper.take_over(speed)
+        drive = stepper.drive
+        takes = "force" if isinstance(drive, Force) else "speed"
+        if given != takes:
+            kind = self.scenario.drive.kind
+            raise UsageError(f"a drive of kind {kind} takes a {takes} from outside, no {given}; give {takes}=")
+        if not _is_number(value):
+            raise UsageError(f"a {given} of {value!r} {unit} cannot be driven; it must be a finite number")
+        if isinstance(drive, TipSpeed) and value < 0:
+            raise UsageError(f"a tip speed of {value:.6g} m/s is refused; the hub never moves back: give 0 or more")
+        if not drive.taken_over or drive.taken_over[-1] != value:
+            self._check_travel(drive.taken_over_at(self.time, value), target)
+            stepper.take_over(value)
 
     def get_state(self) -> bytes:
         """The whole state: a simulation of the same scenario that restores it goes on bit for bit, also in another
@@ -154,8 +192,8 @@ class Simulation:
         grid = self._stepper.grid_state
         if grid is not None:
             arrays |= {f"grid.{name}": array for name, array in to_arrays(grid).items()}
-        taken_over = self._stepper.drive.taken_over
-        arrays["drive"] = np.array(taken_over if taken_over is not None else ())
+        arrays["drive"] = np.array(self._stepper.drive.taken_over)
+        arrays["anchor"] = np.array(astuple(self._watch.anchor))
         arrays["counts"] = self._stepper.bookkeeping()
         peaks = self._stepper.all_peaks()
         arrays["words"] = _as_bytes({"peaks": peaks, "stopped": _as_words(self._stopped)})
@@ -166,7 +204,7 @@ class Simulation:
         simulation then stays as it was."""
         arrays = unpack(state, self._fingerprint())
         drive = tuple(float(x) for x in arrays.pop("drive"))
-        counts = arrays.pop("counts")
+        counts, anchor = arrays.pop("counts"), arrays.pop("anchor")
         words = json.loads(arrays.pop("words").tobytes())
         parts: dict[str, dict[str, Any]] = {"now": {}, "grid": {}}
         for name, array in arrays.items():
@@ -176,6 +214,7 @@ class Simulation:
         self._stepper.set_everything(
             from_arrays(parts["now"]), grid, drive, counts.astype(np.float64), _as_peaks(words["peaks"])
         )
+        self._watch.anchor = Anchor(*anchor.tolist())
         self._stopped = _as_report(words["stopped"])
 
     def _fingerprint(self) -> str:
@@ -183,8 +222,8 @@ class Simulation:
         return hashlib.sha256(text.encode()).hexdigest()
 
     def finished(self) -> StatusReport:
-        """How the run ended, now that it has reached its end: completed, unless the energies do not add up."""
-        return self._stopped or energy_report(self._stepper) or StatusReport(Status.COMPLETED, self.time)
+        """How the run ended, now that it has reached its end: completed, unless an event or a failure came before."""
+        return self._ended_as(Status.COMPLETED)
 
     def result(self, samples: list[dict[str, Any]], status: StatusReport, wall_time: float) -> Result:
         """A result of output instants (`outputs` at rising times). wall_time : s, of the solution alone."""

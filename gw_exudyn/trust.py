@@ -33,6 +33,9 @@ def trust_report(stepper: Stepper, *, converged: bool) -> StatusReport | None:
     if not (np.isfinite(stepper.contact.motion.q).all() and np.isfinite(stepper.instant.push)):
         return StatusReport(Status.NOT_FINITE, time)
     deepest = stepper.deepest
+    if stepper.loads.discs.depth > DEEPEST * wire.radius:
+        sunk = f"penetration {stepper.loads.discs.depth * 1e6:.4g} um, {push}"
+        return StatusReport(Status.TOO_DEEP, time, "at a support or the nose", sunk)
     if deepest.depth > DEEPEST * wire.radius:
         sunk = f"penetration {deepest.depth * 1e6:.4g} um, {push}"
         return StatusReport(Status.TOO_DEEP, time, _place(stepper, deepest), sunk)
@@ -70,9 +73,9 @@ def _left(stepper: Stepper) -> str | None:
 def energy_report(stepper: Stepper) -> StatusReport | None:
     """ENERGY_OPEN where the energies of the run so far do not add up, else None."""
     energies = stepper.energies
-    if energies.largest_work < ENERGY_FLOOR or abs(energies.error) <= OPEN_ENERGY * energies.largest_work:
+    if energies.largest_work < ENERGY_FLOOR or abs(stepper.energy_error) <= OPEN_ENERGY * energies.largest_work:
         return None
-    share = 100 * abs(energies.error) / energies.largest_work
+    share = 100 * abs(stepper.energy_error) / energies.largest_work
     return StatusReport(Status.ENERGY_OPEN, stepper.time, detail=f"{share:.3g} % of {energies.largest_work:.3g} J")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 from collections.abc import Mapping, Sequence
 from importlib import import_module
 from types import MappingProxyType
@@ -13,7 +14,10 @@ from gw_exudyn import __version__
 from gw_exudyn.cli.outcome import exit_code_of
 
 COMMANDS: Mapping[str, str] = MappingProxyType(
-    {name: f"gw_exudyn.cli.{name}" for name in ("run", "check", "plot", "fmu", "info", "schema")}
+    {
+        name: f"gw_exudyn.cli.{name}"
+        for name in ("run", "check", "plot", "animate", "compare", "report", "fmu", "verify", "info", "list", "schema")
+    }
 )
 """Name of each command and the module that holds it as `command`, in the order of the help."""
 
@@ -47,7 +51,7 @@ class CommandGroup(click.Group):
     cls=CommandGroup,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     epilog="Exit codes: 0 done, 2 wrong use, 3 bad scenario, 4 solver failed or run not to be trusted, "
-    "7 trouble with files or the system, 130 interrupted.",
+    "6 comparison beyond its tolerance, 7 trouble with files or the system, 130 interrupted.",
 )
 @click.version_option(__version__, prog_name="gw-exudyn", message="%(prog)s %(version)s")
 def gw_exudyn() -> None:
@@ -61,4 +65,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code. `arguments`: without the program's name; None takes those of the
     process.
     """
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        # Our matrices are small: threads of the linear algebra only get in each other's way. Read when numpy is loaded.
+        os.environ.setdefault(name, "1")
     return exit_code_of(lambda: gw_exudyn.main(arguments, prog_name="gw-exudyn", standalone_mode=False))

@@ -53,7 +53,7 @@ def command(runs: tuple[str, ...], out: str | None, figures: tuple[str, ...]) ->
     else:
         files = _side_by_side(results, Path(out) if out else folders[0].absolute().parent, names)
     for file in files:
-        put(str(_short(file)))
+        put(str(short(file)))
     return 0
 
 
@@ -87,6 +87,6 @@ def _side_by_side(results: list[Result], folder: Path, names: tuple[str, ...]) -
     return files
 
 
-def _short(path: Path) -> Path:
+def short(path: Path) -> Path:
     """The path as seen from the current folder, if it is inside."""
     return path.relative_to(Path.cwd()) if path.is_absolute() and path.is_relative_to(Path.cwd()) else path

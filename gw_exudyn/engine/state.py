@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 from gw_exudyn.errors import UsageError
 from gw_exudyn.model.contact import ContactMemory
 from gw_exudyn.model.energy import Energies
+from gw_exudyn.model.hub import HubEnergies
 
 Floats = NDArray[np.float64]
 
 _MAGIC = b"GWEX"
-_VERSION = 1
+_VERSION = 3
 
 
 @dataclass(frozen=True)
@@ -25,7 +26,8 @@ class State:
     """Everything that the further course depends on, and the sums kept so far.
 
     time : s. q, q_t, q_tt, algorithmic : (3 n + 3,), Exudyn's coordinates, rates, accelerations, and the integrator's
-        own accelerations. multipliers : constraint forces. contact : its memory. energies : sums since the start.
+        own accelerations. multipliers : constraint forces. contact : its memory. energies, hub : sums since the start.
+    control : what the drive's controller remembers; empty where it has none.
     """
 
     time: float
@@ -36,9 +38,11 @@ class State:
     multipliers: Floats
     contact: ContactMemory
     energies: Energies
+    hub: HubEnergies
+    control: Floats
 
 
-_ARRAYS = ("q", "q_t", "q_tt", "algorithmic", "multipliers")
+_ARRAYS = ("q", "q_t", "q_tt", "algorithmic", "multipliers", "control")
 
 
 def to_arrays(state: State) -> dict[str, NDArray[np.generic]]:
@@ -46,6 +50,7 @@ def to_arrays(state: State) -> dict[str, NDArray[np.generic]]:
     arrays: dict[str, NDArray[np.generic]] = {name: getattr(state, name) for name in _ARRAYS}
     arrays["time"] = np.array([state.time])
     arrays["energies"] = np.array([getattr(state.energies, f.name) for f in fields(Energies)])
+    arrays["hub"] = np.array([getattr(state.hub, f.name) for f in fields(HubEnergies)])
     arrays |= {f"contact.{f.name}": getattr(state.contact, f.name) for f in fields(ContactMemory)}
     return arrays
 
@@ -54,8 +59,9 @@ def from_arrays(arrays: dict[str, NDArray[np.generic]]) -> State:
     """The state again."""
     energies = Energies(*(float(x) for x in arrays["energies"]))
     contact = ContactMemory(**{f.name: arrays[f"contact.{f.name}"] for f in fields(ContactMemory)})  # type: ignore[arg-type]
+    hub = HubEnergies(*(float(x) for x in arrays["hub"]))
     plain = {name: arrays[name] for name in _ARRAYS}
-    return State(time=float(arrays["time"][0]), contact=contact, energies=energies, **plain)  # type: ignore[arg-type]
+    return State(time=float(arrays["time"][0]), contact=contact, energies=energies, hub=hub, **plain)  # type: ignore[arg-type]
 
 
 def pack(arrays: dict[str, NDArray[np.generic]], fingerprint: str) -> bytes:

@@ -8,7 +8,7 @@ that is taken back before the run goes on, so that results do not depend on how 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,19 +16,25 @@ from numpy.typing import NDArray
 from gw_exudyn.engine.assembly import HUB_COORDINATES, System, assemble
 from gw_exudyn.engine.interrupt import after_the_step
 from gw_exudyn.engine.library import exudyn
-from gw_exudyn.engine.newton import Newton
+from gw_exudyn.engine.newton import PIECE, Newton
 from gw_exudyn.engine.settings import simulation_settings
 from gw_exudyn.engine.state import State
 from gw_exudyn.errors import SolverError
 from gw_exudyn.model import Model
-from gw_exudyn.model.contact import NOWHERE, Contact
-from gw_exudyn.model.drive import Drive
-from gw_exudyn.model.energy import Energies, Snapshot, advanced, snapshot, wall_start
+from gw_exudyn.model.contact import NOWHERE, Contact, Deepest
+from gw_exudyn.model.drive import AnyDrive, Force
+from gw_exudyn.model.energy import Energies, Snapshot, advanced, snapshot
+from gw_exudyn.model.hub import HubEnergies, HubInstant, hub_advanced
+from gw_exudyn.model.loads import Loads
+from gw_exudyn.model.tip_speed import Leg, TipSpeed
 
 Floats = NDArray[np.float64]
 
 _SAME_TIME = 1e-9
 """Times closer than this, s, are one."""
+
+_SLOWER = 5
+"""How often a step is taken again with a slower leg; the last time the hub stands still."""
 
 _LEAST_RELEASE = 1e-11
 """Releases of less, J, are not kept: even a thousand in a row are nothing."""
@@ -51,12 +57,13 @@ class Stepper:
     def __init__(self, model: Model) -> None:
         self.model = model
         self.contact = Contact(model.wire, model.walls, model.law)
-        self.drive: Drive = model.drive
+        self.drive: AnyDrive = model.drive
         spec = model.scenario.solver
-        self._newton = Newton(self.contact)
+        self.loads = Loads(model.wire, model.loads)
+        self._newton = Newton(self.contact, self.loads)
         self.system: System = assemble(model, self._newton.tangent)
-        self._newton.attach(self.system)
-        self._settings = simulation_settings(spec.step, spec.minimum_step, spec.tolerance)
+        self._newton.attach(self.system, spec.step)
+        self._settings = simulation_settings(spec.step, spec.minimum_step, spec.tolerance, spec.absolute_tolerance)
         self._solver = exudyn().MainSolverImplicitSecondOrder()
         self._newton.install(self._start_trial, self._end_step)
         if not self._solver.InitializeSolver(self.system.mbs, self._settings):
@@ -66,14 +73,15 @@ class Stepper:
         self.peaks: Peaks = {}
         self.deepest = NOWHERE
         self._instant: Snapshot = snapshot(model.wire, self.contact.motion, 0.0, 0.0)
-        self.energies = Energies()
+        self.energies, self.hub_energies = Energies(), HubEnergies()
+        self._hub = HubInstant()
         self.releases: list[Release] = []
         self.steps, self.smallest_step = 0, math.inf
         self._initial = self._first_state()
         self.reset()
 
     def reset(self) -> None:
-        """Back to the start: the straight wire in the catheter, the tip at the exit."""
+        """Back to the start: the straight wire, inserted as far as the scenario says."""
         self.drive = self.model.drive
         self.steps, self.smallest_step = 0, math.inf
         self._newton.reset_counts()
@@ -100,8 +108,9 @@ class Stepper:
             following = self.next_grid_time()
             if following > target + _SAME_TIME:
                 self._grid = (self.state(), len(self.releases), dict(self.peaks))
+                self._find_leg(following)
                 return self._solve(target)
-            if not self._solve(following):
+            if not self._nominal_step(following):
                 return False
         return True
 
@@ -110,10 +119,16 @@ class Stepper:
         step = self.model.scenario.solver.step
         return round((math.floor(self._time / step + 1e-6) + 1) * step, 12)
 
-    def take_over(self, speed: float) -> None:
-        """From now on the drive has this constant speed, m/s. What was run so far stays."""
+    @property
+    def on_grid(self) -> bool:
+        """The time reached ends a nominal step."""
+        step = self.model.scenario.solver.step
+        return abs(self._time - round(self._time / step) * step) < _SAME_TIME
+
+    def take_over(self, value: float) -> None:
+        """From now on the drive has this constant speed, m/s, or force, N. What was run so far stays."""
         self._grid = None
-        self.drive = self.drive.taken_over_at(self._time, speed)
+        self.drive = self.drive.taken_over_at(self._time, value)
 
     def _return_to_grid(self) -> None:
         if self._grid is not None:
@@ -124,9 +139,8 @@ class Stepper:
 
     def _solve(self, end: float) -> bool:
         """Exudyn's steps from the time reached to `end`."""
-        self._end = end
-        travel = (end - self._time) * self.drive.fastest(self._time, end)
-        pieces = max(1, math.ceil(travel / (self.contact.reach / 3) - 1e-9))
+        travel = (end - self._time) * self.system.hub.fastest(self.drive, self._hub, self._time, end)
+        pieces = max(1, math.ceil(travel / (self.contact.reach * PIECE) - 1e-9))
         for piece in np.linspace(self._time, end, pieces + 1)[1:]:
             it = self._solver.it
             it.startTime = it.currentTime = self._time
@@ -139,12 +153,61 @@ class Stepper:
                 return False
         return True
 
+    def _nominal_step(self, end: float) -> bool:
+        """To the next grid time. A controlled drive chooses its leg, from the state alone, so that what is run from
+        here twice is run alike; where the push force would pass its limit, the step is taken again with a slower leg.
+        """
+        if not isinstance(self.drive, TipSpeed):
+            return self._solve(end)
+        before = self._instant.push
+        self.drive = self._decided(self.drive)
+        mark = self._mark()
+        solved = self._solve(end)
+        for attempt in range(_SLOWER):
+            if not (solved and self.drive.is_too_fast(self._instant.push)):
+                break
+            slower = self.drive.slowed(before, self._instant.push, last=attempt == _SLOWER - 1)
+            self._back_to(mark)
+            self.drive = slower
+            solved = self._solve(end)
+        return solved
+
+    def _decided(self, drive: TipSpeed) -> TipSpeed:
+        return drive.decided(self._time, self.tip(), self._instant.push, self.model.scenario.solver.step)
+
+    def _find_leg(self, end: float) -> None:
+        """The leg of a controlled drive up to the next grid time, for a stop on the way; nothing else has moved."""
+        if not isinstance(self.drive, TipSpeed):
+            return
+        if math.isinf(self.drive.force_limit):
+            self.drive = self._decided(self.drive)
+            return
+        mark = self._mark()
+        self._nominal_step(end)
+        drive = self.drive
+        self._back_to(mark)
+        self.drive = drive
+
+    def _mark(self) -> tuple[State, int, Peaks, Deepest]:
+        return self.state(), len(self.releases), dict(self.peaks), self.deepest
+
+    def _back_to(self, mark: tuple[State, int, Peaks, Deepest]) -> None:
+        """As if nothing had been run since `mark`; only the counts of work go on."""
+        state, releases, peaks, self.deepest = mark
+        self.peaks = dict(peaks)
+        del self.releases[releases:]
+        self.restore(state)
+
+    def tip(self) -> tuple[float, float]:
+        """Place of the tip, m."""
+        motion, half = self.contact.motion, self.model.wire.lengths[-1] / 2
+        return float(motion.q[-1, 0] + half * motion.c[-1]), float(motion.q[-1, 1] + half * motion.s[-1])
+
     def _start_trial(self, end: float) -> tuple[float, float]:
-        """Exudyn begins a (perhaps repeated) step that ends at `end`: place the hub. Returns the step, s, and the
-        travel, m."""
-        position = self.drive.position_at(end)
-        self.system.mbs.SetObjectParameter(self.system.drive, "offset", position)
-        return end - self._time, position - self._instant.travel
+        """Exudyn begins a (perhaps repeated) step that ends at `end`: move the hub. Returns the step, s, and the
+        travel, m, to expect."""
+        self.system.hub.aim(self.system.mbs, self.drive, end)
+        return end - self._time, self.system.hub.travel(self.drive, self._hub, self._time, end)
 
     def _end_step(self, time: float) -> None:
         """A step was accepted: take over its forces, count its energies, find the pairs of the next."""
@@ -152,12 +215,15 @@ class Stepper:
         self.steps += 1
         self.smallest_step = min(self.smallest_step, step)
         self._time = time
-        before, lost = self._instant, self.energies.numerical_loss + self.energies.damping_loss
+        before, hub, lost = self._instant, self._hub, self.energies.numerical_loss + self.energies.damping_loss
         self._instant = self._look()
         acceleration = np.asarray(self.system.mbs.systemData.GetODE2Coordinates_tt())[HUB_COORDINATES:].reshape(-1, 3)
         self.energies = advanced(
-            self.energies, self.contact, self._wall_start, before, self._instant, acceleration, step
+            self.energies, self.contact, self._wall_energy, before, self._instant, acceleration, step
         )
+        if isinstance(self.drive, Force):
+            mass, damping = self.drive.hub_mass, self.drive.hub_damping
+            self.hub_energies = hub_advanced(self.hub_energies, mass, damping, hub, self._hub, step)
         released = self.energies.numerical_loss + self.energies.damping_loss - lost
         if released > _LEAST_RELEASE:
             self.releases.append(Release(time, released))
@@ -173,7 +239,7 @@ class Stepper:
         values = {
             "push_force": self._instant.push,
             "pull_force": -self._instant.push,
-            "wall_force_max": self.contact.largest_force(),
+            "wall_force_max": self.contact.summary().largest,
             "penetration_max": deepest.depth,
         }
         for name, value in values.items():
@@ -181,18 +247,24 @@ class Stepper:
                 self.peaks[name] = (value, time)
 
     def _look(self) -> Snapshot:
-        return snapshot(self.model.wire, self.contact.motion, self.push_force(), self.drive.position_at(self._time))
+        self._hub = self.system.hub.instant(self.system.mbs, self.drive, self._time)
+        loads = self.loads.instant(self.contact.motion)
+        return snapshot(self.model.wire, self.contact.motion, self._hub.push, self._hub.travel, loads)
 
     def _prepare(self) -> None:
         self.contact.start_step()
         self.contact.evaluate()
-        self._wall_start = wall_start(self.contact)
+        self._wall_energy = self.contact.summary().energy
 
-    def push_force(self) -> float:
-        """Force of the drive on the wire along the catheter, N, positive when pushing: the constraint's, less the hub's
-        inertia."""
-        data = self.system.mbs.systemData
-        return -float(data.GetAECoordinates()[0]) - self.system.hub_mass * float(data.GetODE2Coordinates_tt()[0])
+    @property
+    def hub(self) -> HubInstant:
+        """The hub at the time reached."""
+        return self._hub
+
+    @property
+    def energy_error(self) -> float:
+        """What does not add up so far, J, of the wire's energies and the hub's."""
+        return self.energies.error + self.hub_energies.error
 
     @property
     def instant(self) -> Snapshot:
@@ -211,7 +283,13 @@ class Stepper:
             multipliers=np.array(data.GetAECoordinates()),
             contact=self.contact.memory,
             energies=self.energies,
+            hub=self.hub_energies,
+            control=self._control(),
         )
+
+    def _control(self) -> Floats:
+        """What the drive's controller remembers."""
+        return np.array(astuple(self.drive.leg) if isinstance(self.drive, TipSpeed) else ())
 
     def restore(self, state: State) -> None:
         """Go on from a state exactly as the run did that it was taken from."""
@@ -229,7 +307,9 @@ class Stepper:
             data.SetAECoordinates(state.multipliers, configuration)
             data.SetTime(state.time, configuration)
         self._time = state.time
-        self.energies = state.energies
+        self.energies, self.hub_energies = state.energies, state.hub
+        if isinstance(self.drive, TipSpeed):
+            self.drive = replace(self.drive, leg=Leg(*state.control.tolist()))
         self.contact.memory = state.contact
         self._newton.look(state.q, state.q_t, state.time)
         self._instant = self._look()
@@ -266,8 +346,7 @@ class Stepper:
         self.releases = [Release(float(time), float(energy)) for time, energy in rows]
         self.drive = self.model.drive
         if taken_over:
-            since, position, speed = taken_over
-            self.drive = replace(self.model.drive, taken_over=(since, position, speed))
+            self.drive = replace(self.model.drive, taken_over=taken_over)
         self.peaks, self.deepest = dict(peaks[0]), NOWHERE
         self._grid = None if grid is None else (grid, int(bookkeeping[2 + counts]), dict(peaks[1]))
         self.restore(now)
@@ -280,14 +359,20 @@ class Stepper:
         self.contact.start_step()
         self.contact.evaluate()
         self.contact.accept()
-        zeros = np.zeros_like(q)
         multipliers = np.zeros(len(data.GetAECoordinates()))
-        instant = snapshot(self.model.wire, self.contact.motion, 0.0, 0.0)
-        stored = instant.elastic + instant.kinetic
+        loads = self.loads.instant(self.contact.motion)
+        instant = snapshot(self.model.wire, self.contact.motion, 0.0, 0.0, loads)
+        stored = instant.elastic + loads.stored + instant.kinetic
         energies = replace(
-            Energies(), elastic=instant.elastic, kinetic=instant.kinetic, start=stored, largest_work=stored
+            Energies(),
+            elastic=instant.elastic,
+            wall=loads.stored,
+            kinetic=instant.kinetic,
+            start=stored,
+            largest_work=stored,
         )
-        return State(0.0, q, q_t, zeros, zeros.copy(), multipliers, self.contact.memory, energies)
+        zeros, memory = np.zeros_like(q), self.contact.memory
+        return State(0.0, q, q_t, zeros, zeros.copy(), multipliers, memory, energies, HubEnergies(), self._control())
 
     def counts(self) -> dict[str, int]:
         """Solver counts since the last reset."""

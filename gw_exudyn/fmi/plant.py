@@ -15,7 +15,7 @@ from gw_exudyn.errors import UsageError
 from gw_exudyn.fmi import variables as names
 from gw_exudyn.fmi.channel import DONE, FAILED, STOPPED
 from gw_exudyn.fmi.resources import read_scenario, read_table
-from gw_exudyn.fmi.variables import TEXT, Variable, constant_speed, output_name, status_code
+from gw_exudyn.fmi.variables import TEXT, Variable, command_of, constant_drive, output_name, status_code
 from gw_exudyn.quantities import QUANTITIES, SCALARS
 from gw_exudyn.scenario import Scenario, load_scenario, scenario_from_dict
 from gw_exudyn.simulation import Simulation
@@ -41,9 +41,11 @@ class ScenarioPlant:
         self._numbers = [v for v in settable if v.kind != TEXT]
         self._texts = [v for v in settable if v.kind == TEXT]
         place = {v.name: i for i, v in enumerate(self._numbers)}
-        self._speed_at = place[names.COMMAND_SPEED]
+        # The FMU has the one of the two that its scenario's drive takes.
+        self._command = "force" if names.COMMAND_FORCE in place else "speed"
+        self._command_at = place[f"command.{self._command}"]
         # What does not change the model: a run with other values of these alone begins from the same simulation.
-        self._not_structure = {self._speed_at, place[names.TIMEOUT], place[names.COMMAND_ACTIVE]}
+        self._not_structure = {self._command_at, place[names.TIMEOUT], place[names.COMMAND_ACTIVE]}
         self._active_at = place[names.COMMAND_ACTIVE]
         outputs = [v for v in table if v.role == names.OUTPUT and v.kind != TEXT]
         quantity_of = {output_name(q): q for q in SCALARS}
@@ -82,18 +84,18 @@ class ScenarioPlant:
 
     def step(self, target: float, numbers: bytes, alive: Callable[[], None]) -> int:
         """Go to the time `target`, s."""
-        speed, simulation = array("d", numbers)[self._speed_at], self.simulation
-        self._commanded = self._commanded or speed != self._numbers[self._speed_at].start
-        command = speed if self._commanded else None
+        value, simulation = array("d", numbers)[self._command_at], self.simulation
+        self._commanded = self._commanded or value != self._numbers[self._command_at].start
+        given = {self._command: value} if self._commanded else {}
         target = round(target, 12)
         step = simulation.scenario.solver.step
-        while simulation.time < target - 1e-9 and not simulation.failed:
+        while simulation.time < target - 1e-9 and not simulation.ended:
             ahead = round((math.floor(simulation.time / step + 1e-6) + _STEPS_AT_ONCE) * step, 12)
-            self._sampled = simulation.step(min(target, ahead) - simulation.time, speed=command)
+            self._sampled = simulation.step(min(target, ahead) - simulation.time, **given)
             alive()
-        if not simulation.failed:
+        if not simulation.ended:
             return DONE
-        return STOPPED if simulation.status.status.trusted else FAILED
+        return FAILED if simulation.failed else STOPPED
 
     def outputs(self) -> tuple[bytes, Sequence[str]]:
         """The outputs at the time reached, in the table's order."""
@@ -102,7 +104,7 @@ class ScenarioPlant:
         values = array("d")
         for reader in self._readers:
             reader(values, outputs, simulation)
-        wrong = simulation.failed or status_code(report.status)
+        wrong = simulation.ended or status_code(report.status)
         return values.tobytes(), [report.sentence() if wrong else "Nothing is wrong."]
 
     def get_state(self) -> bytes:
@@ -125,7 +127,7 @@ class ScenarioPlant:
             if text != variable.start:
                 changed[variable.name] = text
         file = changed.pop(names.SCENARIO_FILE, None)
-        for own in (names.COMMAND_SPEED, names.COMMAND_ACTIVE, names.TIMEOUT):
+        for own in (names.COMMAND_SPEED, names.COMMAND_FORCE, names.COMMAND_ACTIVE, names.TIMEOUT):
             changed.pop(own, None)
         base = scenario_from_dict(self._data) if file is None else load_scenario(file)
         return overridden(base, changed)
@@ -138,12 +140,20 @@ def overridden(base: Scenario, changed: Mapping[str, Any]) -> Scenario:
     data = base.to_dict()
     if {"wire.model", "wire.length"} & set(plain):
         _leave_to_the_catalogue(data["wire"], base, plain)
-    if {"drive.speed", "drive.distance"} & set(plain):
-        speed = plain.pop("drive.speed", constant_speed(base) or 0.0)
-        way = plain.pop("drive.distance", abs(constant_speed(base) or 0.0) * base.drive.duration)
-        data["drive"] = {"kind": "speed", "speed": speed, "distance": way}
+    if {"drive.speed", "drive.force", "drive.distance"} & set(plain):
+        data["drive"] = _one_value(data["drive"], base, plain)
     scenario = scenario_from_dict(data, plain)
     return _scaled(scenario, factors) if factors else scenario
+
+
+def _one_value(drive: dict[str, Any], base: Scenario, plain: dict[str, Any]) -> dict[str, Any]:
+    """The drive with one speed or force instead of its table; what it takes from `plain` is taken out there."""
+    what, known = command_of(base), constant_drive(base) or 0.0
+    kept = {name: value for name, value in drive.items() if name != "table"}
+    kept[what] = plain.pop(f"drive.{what}", known)
+    if base.drive.kind == "speed":
+        return {**kept, "distance": plain.pop("drive.distance", abs(known) * base.drive.duration)}
+    return {**kept, "duration": base.drive.duration}
 
 
 def _leave_to_the_catalogue(wire: dict[str, Any], base: Scenario, changed: Mapping[str, Any]) -> None:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from gw_exudyn.errors import SolverError, StorageError, UsageError
 from gw_exudyn.fmi.variables import STATUS_CODE, STATUS_MESSAGE
+from gw_exudyn.result import Status
 from gw_exudyn.scenario.units import parse_unit
 
 _TAKES_TEXT = ("String",)
@@ -40,6 +41,11 @@ class FmuRun:
     def names(self) -> tuple[str, ...]:
         """Names of the columns."""
         return tuple(self.outputs.dtype.names or ())
+
+    @property
+    def trusted(self) -> bool:
+        """The run is still good, or has ended by an event of its own."""
+        return self.code == 0 or list(Status)[self.code].trusted
 
     @property
     def final(self) -> dict[str, Any]:

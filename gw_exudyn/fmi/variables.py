@@ -7,6 +7,7 @@ them. The value reference of a variable is its place in the table.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -52,8 +53,9 @@ class Variable:
         return self.role in (INPUT, FIXED, TUNABLE)
 
 
-COMMAND_SPEED, COMMAND_ACTIVE, SCENARIO_FILE, TIMEOUT = (
+COMMAND_SPEED, COMMAND_FORCE, COMMAND_ACTIVE, SCENARIO_FILE, TIMEOUT = (
     "command.speed",
+    "command.force",
     "command.active",
     "scenarioFile",
     "worker.timeout",
@@ -115,7 +117,7 @@ def output_name(quantity: str) -> str:
 
 
 def status_code(status: Status) -> int:
-    """0 while nothing is wrong, else the number of the status."""
+    """0 while the run goes on and nothing is wrong, else the number of the status."""
     return 0 if status in (Status.COMPLETED, Status.STOPPED) else list(Status).index(status)
 
 
@@ -135,14 +137,29 @@ def table(model: Model, scalars: tuple[str, ...], stations: int = 0) -> list[Var
     ]
 
 
+def command_of(scenario: Scenario) -> str:
+    """What the scenario's drive takes from outside: "speed" or "force"."""
+    return "force" if scenario.drive.kind == "force" else "speed"
+
+
+def _course(scenario: Scenario) -> tuple[float, ...]:
+    """Speed, m/s, or force, N, of the drive at the times of its table."""
+    course: tuple[float, ...] = getattr(scenario.drive, command_of(scenario))
+    return course
+
+
 def _commands(scenario: Scenario) -> Iterator[Variable]:
-    first = float(scenario.drive.speed[0])
+    name, what, unit, display = {
+        "speed": (COMMAND_SPEED, "speed of the drive", "m/s", "mm/s"),
+        "tip_speed": (COMMAND_SPEED, "wanted speed of the tip", "m/s", "mm/s"),
+        "force": (COMMAND_FORCE, "force of the drive on the hub", "N", "mN"),
+    }[scenario.drive.kind]
     text = (
-        "speed of the drive, positive into the vessel; it rules from the first step at which it differs from its start,"
-        " or from the beginning with command.active; until then the scenario's own drive does"
+        f"{what}, positive into the vessel; it rules from the first step at which it differs from its start, "
+        "or from the beginning with command.active; until then the scenario's own drive does"
     )
-    yield Variable(COMMAND_SPEED, REAL, INPUT, text, first, "m/s", "mm/s")
-    yield Variable(COMMAND_ACTIVE, BOOLEAN, FIXED, "command.speed rules from the beginning", False)
+    yield Variable(name, REAL, INPUT, text, float(_course(scenario)[0]), unit, display)
+    yield Variable(COMMAND_ACTIVE, BOOLEAN, FIXED, f"{name} rules from the beginning", False)
 
 
 def _own_parameters() -> Iterator[Variable]:
@@ -162,8 +179,10 @@ def _parameters(model: Model) -> Iterator[Variable]:
     for i in range(len(scenario.wire.bending_stiffness)):
         name = f"wire.bending_stiffness[{i}].factor"
         yield Variable(name, REAL, FIXED, f"{factor}, of piece {i} from the tip", 1.0, "1", "1", 1e-3, 1e3)
-    for part in ("wire", "vessel", "catheter", "contact", "solver"):
-        yield from _section(part, getattr(scenario, part), known)
+    for part in ("wire", "vessel", "catheter", "contact", "stop", "solver"):
+        section = getattr(scenario, part)
+        if section is not None:
+            yield from _section(part, section, known)
     yield from _drive(scenario)
 
 
@@ -188,20 +207,35 @@ def _parameter(path: str, kind: Quantity | Number | Whole | Choice, value: Any, 
         yield Variable(path, TEXT, FIXED, f"{text}; one of {', '.join(kind.words)}", str(value), source=path)
 
 
-def constant_speed(scenario: Scenario) -> float | None:
-    """The speed, m/s, of a drive that has only one and moves; else None."""
-    speeds = set(scenario.drive.speed)
-    return float(speeds.pop()) if len(speeds) == 1 and 0.0 not in speeds else None
+def constant_drive(scenario: Scenario) -> float | None:
+    """The speed, m/s, or force, N, of a drive that has only one and moves; else None."""
+    values = set(_course(scenario))
+    return float(values.pop()) if len(values) == 1 and 0.0 not in values else None
 
 
 def _drive(scenario: Scenario) -> Iterator[Variable]:
-    from gw_exudyn.scenario.kinds import SPEED, TRAVEL
+    from gw_exudyn.scenario import kinds
 
-    speed = constant_speed(scenario)
-    if speed is not None:
-        way = abs(speed) * scenario.drive.duration
-        yield from _parameter("drive.speed", SPEED, speed, "speed of the drive, positive into the vessel")
-        yield from _parameter("drive.distance", TRAVEL, way, "travel in the direction of the speed")
+    drive, value = scenario.drive, constant_drive(scenario)
+    if value is not None:
+        kind, text = {
+            "speed": (kinds.SPEED, "speed of the drive, positive into the vessel"),
+            "tip_speed": (kinds.TIP_SPEED_OR_NONE, "wanted speed of the tip"),
+            "force": (kinds.FORCE_OR_NONE, "force on the hub, positive into the vessel"),
+        }[drive.kind]
+        yield from _parameter(f"drive.{command_of(scenario)}", kind, value, text)
+    if value is not None and drive.kind == "speed":
+        way = abs(value) * drive.duration
+        yield from _parameter("drive.distance", kinds.TRAVEL, way, "travel in the direction of the speed")
+    for field, kind, text in (
+        ("hub_mass", kinds.HUB_MASS, "mass of the hub"),
+        ("hub_damping", kinds.HUB_DAMPING, "damping of the hub"),
+        ("max_speed", kinds.HUB_SPEED, "largest speed of the hub"),
+        ("force_limit", kinds.FORCE_LIMIT, "push force above which the hub waits"),
+    ):
+        known = getattr(drive, field, None)
+        if known is not None and math.isfinite(known):
+            yield from _parameter(f"drive.{field}", kind, known, text)
 
 
 def _outputs(scalars: tuple[str, ...]) -> Iterator[Variable]:
@@ -215,7 +249,7 @@ def _outputs(scalars: tuple[str, ...]) -> Iterator[Variable]:
 def _status() -> Iterator[Variable]:
     codes = ", ".join(f"{status_code(s)} {s.name}" for s in Status if status_code(s))
     yield Variable(STATUS_MESSAGE, TEXT, OUTPUT, "whether the run can be trusted and, if not, what to change", "")
-    yield Variable(STATUS_CODE, INTEGER, OUTPUT, f"0 while nothing is wrong; {codes}")
+    yield Variable(STATUS_CODE, INTEGER, OUTPUT, f"0 while the run goes on and nothing is wrong; {codes}")
 
 
 def _station(name: str, quantity: str, text: str, stations: int) -> Variable:

@@ -8,12 +8,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gw_exudyn.model.kernel import Kernel, Motion, Pairs
+from gw_exudyn.model.kernel import Kernel, Motion, Pairs, Summary
 from gw_exudyn.model.walls import Walls
 from gw_exudyn.model.wire import Wire
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Ints32 = NDArray[np.int32]
 
 
 @dataclass(frozen=True)
@@ -89,6 +90,8 @@ class Contact:
         self.reach = 5 * wire.radius
         self._half_bore = float(np.abs(walls.start[walls.tube, 1]).max(initial=0.0)) or np.inf
         self.first = 0
+        self._corners_at: tuple[Floats, tuple[int, Ints32, Ints32, Floats]] | None = None
+        self._summary: Summary | None = None
 
     @property
     def force(self) -> Floats:
@@ -100,14 +103,19 @@ class Contact:
         """(9 n,): 3 x 3 blocks by rows; d force/dq, weighted as the last `evaluate` was told."""
         return self._kernel.tangent
 
-    def _first_in_vessel(self) -> int:
-        return first_in_vessel(self.motion, self.wire, self._half_bore)
+    def _about_corners(self) -> tuple[int, Ints32, Ints32, Floats]:
+        """At the present place: the first body in the vessel; for each corner the nearest body, whether the corner is
+        ahead of the tip, and its offset, m. The end of a step asks, and the start of the next."""
+        if self._corners_at is None or not np.array_equal(self._corners_at[0], self.motion.q):
+            first = first_in_vessel(self.motion, self.wire, self._half_bore)
+            found = self._kernel.nearest(self.motion, first, len(self.walls.corner))
+            self._corners_at = self.motion.q.copy(), (first, *found)
+        return self._corners_at[1]
 
     def start_step(self) -> None:
         """Find the pairs for a step that starts at the present place, and recall what they carried."""
         self.motion.start_step()
-        self.first = self._first_in_vessel()
-        nearest = self._kernel.nearest(self.motion, self.first, len(self.walls.corner))[0]
+        self.first, nearest, _, _ = self._about_corners()
         while not self._kernel.candidates(
             self.motion, self.memory.side, nearest, self.first, self.reach, self.nodes, self.corners
         ):
@@ -126,36 +134,34 @@ class Contact:
 
         predicted : the place is the first guess of a step (see contact_law in contact.c).
         """
+        self._summary = None
         self.motion.struct.predicted = int(predicted)
         self._kernel.evaluate(self.motion, self.nodes, self.corners, position, velocity)
 
-    def gaps(self) -> tuple[Floats, Floats]:
-        """Gaps, m, of the node and the corner pairs at the last `evaluate`."""
-        return self.nodes.gap.copy(), self.corners.gap.copy()
+    def add_turning(self, tangent: Floats, reaction: Floats, *, stiffening: bool) -> None:
+        """Add to a tangent (9 n,) like `tangent`, contiguous, how the joints' forces turn each segment as it turns.
 
-    def share_to_touch(self, before: tuple[Floats, Floats]) -> float:
-        """Share of the way from the place of `before` (its `gaps`) to the present one where the first contact closes.
+        reaction : (2 n,), N, minus the force on each segment's proximal end, contiguous. stiffening : leave out what
+        makes a segment resist its turn less.
+        """
+        self._kernel.add_turning(self.motion, tangent, reaction, stiffening=stiffening)
+
+    def share_to_touch(self, before: Motion) -> float:
+        """Share of the way from the place `before` to the present one where the first contact closes.
 
         0 to 1; of the contacts that were open at `before`, 1 if none of them closes.
         """
-        share = 1.0
-        for pairs, gap in zip((self.nodes, self.corners), before, strict=True):
-            if not len(gap):
-                continue
-            closes = (gap >= self.law.toe) & (pairs.gap < -self.law.toe) & (pairs.weight > _HALF_WAY)
-            if closes.any():
-                share = min(share, float((gap[closes] / (gap[closes] - pairs.gap[closes])).min()))
-        return share
+        return self._kernel.share_to_touch(before, self.nodes, self.corners)
 
     def accept(self) -> None:
         """Take the present place, just evaluated, as the end of the step: keep slips, stiffness shares and sides."""
         nodes, corners, walls = self.nodes, self.corners, self.walls
         stiffness = self.law.stiffness
-        touching = (nodes.normal > 0) & (nodes.weight > 0)
-        meeting = (corners.normal > 0) & (corners.weight > 0)
-        share = corners.weight * meeting
-        total = np.bincount(corners.target, share, len(walls.corner))
-        slip = np.bincount(corners.target, share * corners.elastic, len(walls.corner))
+        touching = np.flatnonzero(nodes.normal * nodes.weight)
+        meeting = np.flatnonzero(corners.normal * corners.weight)
+        at, share, elastic = corners.target[meeting], corners.weight[meeting], corners.elastic[meeting]
+        total = np.bincount(at, share, len(walls.corner))
+        slip = np.bincount(at, share * elastic, len(walls.corner))
         side = self._passed()
         # Slip counts along the wire, whose sense about the corner is that of a corner on the left until it is passed.
         turned = np.where((side < 0) == (self.memory.side < 0), 1.0, -1.0)
@@ -166,8 +172,8 @@ class Contact:
             node_slip=nodes.elastic[touching],
             node_held=nodes.normal_stiffness[touching] / nodes.weight[touching] / stiffness,
             corner_keys=self._corner_keys[meeting],
-            corner_pair_slip=(turned[corners.target] * corners.elastic)[meeting],
-            corner_held=corners.normal_stiffness[meeting] / corners.weight[meeting] / stiffness,
+            corner_pair_slip=turned[at] * elastic,
+            corner_held=corners.normal_stiffness[meeting] / share / stiffness,
         )
 
     def _passed(self) -> Floats:
@@ -175,31 +181,21 @@ class Contact:
         side = self.memory.side
         if not len(side):
             return side
-        body, ahead, offset = self._kernel.nearest(self.motion, self._first_in_vessel(), len(side))
+        _, body, ahead, offset = self._about_corners()
         fresh = np.where(offset < 0, -1.0, 1.0)
         kept: Floats = np.where((ahead == 1) | (body < 0), 0.0, np.where(side == 0, fresh, side))
         return kept
 
+    def summary(self) -> Summary:
+        """All contacts together, at the last `evaluate`."""
+        if self._summary is None:
+            self._summary = self._kernel.summary(self.motion, self.nodes, self.corners)
+        return self._summary
+
     def deepest(self) -> Deepest:
         """The deepest penetration of the last `evaluate`."""
-        worst = NOWHERE
-        for pairs, corner in ((self.nodes, False), (self.corners, True)):
-            if not pairs.count:
-                continue
-            inside = np.where(pairs.weight > _HALF_WAY, -pairs.gap, 0.0)
-            i = int(inside.argmax())
-            if inside[i] > worst.depth:
-                worst = Deepest(float(inside[i]), int(pairs.body[i]), int(pairs.target[i]), corner)
-        return worst
-
-    def largest_force(self) -> float:
-        """Largest force, N, of one contact with the vessel, normal and tangential together, of the last `evaluate`."""
-        largest = 0.0
-        for pairs, tube in ((self.nodes, self.walls.tube), (self.corners, self.walls.corner_tube)):
-            if pairs.count:
-                force = np.where(tube[pairs.target], 0.0, pairs.weight * np.hypot(pairs.normal, pairs.tangential))
-                largest = max(largest, float(force.max()))
-        return largest
+        found = self.summary()
+        return Deepest(found.deepest, found.body, found.target, bool(found.corner))
 
     def is_unstable(self, joint_stiffness: Floats) -> bool:
         """The last `evaluate` found a balance that is no minimum: a compressed wire that has yet to choose a side.
@@ -208,14 +204,16 @@ class Contact:
         """
         return self._kernel.unstable(self.motion, self.nodes, self.corners, joint_stiffness) > 0
 
+    def rubs(self) -> bool:
+        """A contact with friction carries force at the last `evaluate`."""
+        return any(bool(pairs.tangential.any()) for pairs in (self.nodes, self.corners))
+
     def crossing(self) -> tuple[int, int] | None:
         """(body, wall) where the wire's axis crosses a wall of the vessel or the catheter now, or None."""
-        return self._kernel.crossing(self.motion, self._first_in_vessel())
+        return self._kernel.crossing(self.motion, self._about_corners()[0])
 
 
 _ROOM = 256
-_HALF_WAY = 0.5
-"""Weight from which a pair is the one that counts where two share a contact."""
 
 
 def first_in_vessel(motion: Motion, wire: Wire, half_bore: float) -> int:
@@ -228,11 +226,11 @@ def first_in_vessel(motion: Motion, wire: Wire, half_bore: float) -> int:
 
 def _known(keys: Ints, remembered: Ints) -> tuple[Ints, Ints]:
     """Places in `keys` that are remembered, and their places in `remembered` (both sorted)."""
-    if not len(remembered):
+    if not len(keys):
         return np.zeros(0, np.int64), np.zeros(0, np.int64)
-    place = np.minimum(np.searchsorted(remembered, keys), len(remembered) - 1)
-    here = np.flatnonzero(remembered[place] == keys)
-    return here, place[here]
+    place = np.minimum(np.searchsorted(keys, remembered), len(keys) - 1)
+    there = np.flatnonzero(keys[place] == remembered)
+    return place[there], there
 
 
 def _numbers(wire: Wire, law: ContactLaw) -> dict[str, float]:
@@ -262,6 +260,7 @@ def _arrays(wire: Wire, walls: Walls) -> dict[str, NDArray[np.generic]]:
         "wall_fade_lo": walls.fade_lo,
         "wall_fade_hi": walls.fade_hi,
         "wall_friction": walls.friction,
+        "wire_friction": wire.friction_factor,
         "wall_sharp": walls.sharp,
         "wall_tube": walls.tube,
         "corner_x": walls.corner[:, 0],

@@ -5,16 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gw_exudyn.model.outline import Outline
+from gw_exudyn.model.patches import Patch, divided, friction_at
 
 Floats = NDArray[np.float64]
 
 _SHARP_FROM = 1e-7
 """Turn, rad, from which a corner counts as one."""
+
+_SHARED_TO = 0.1
+"""Turn, rad, of a pocket up to which its two walls share a contact, half and half at the joint, so that a bend of many
+facets is no stiffer than one wall. In a sharper pocket each wall pushes in full."""
 
 _REACH_PAST_POCKET = 0.3e-3
 """How far, m, a wall reaches on past a corner that points away from the lumen, for Newton's trial places to meet it."""
@@ -70,32 +76,58 @@ class _Polyline:
 
 @dataclass(frozen=True)
 class Tube:
-    """The catheter in its own frame: the axis along +x, the exit at the origin. bore, length : m."""
+    """The catheter in its own frame: the axis along +x, the exit at the origin. bore, length : m.
+
+    walled : it has walls to touch; one that is not there has none.
+    """
 
     bore: float
     length: float
+    walled: bool = True
 
 
 def build_walls(
-    outline: Outline, tube: Tube, radius: float, friction: float, tube_friction: float, seam_reach: float
+    outline: Outline,
+    tube: Tube,
+    radius: float,
+    friction: float,
+    tube_friction: float,
+    seam_reach: float,
+    patches: Sequence[Patch] = (),
 ) -> Walls:
-    """All walls for a wire of `radius` (m). seam_reach : m, by which walls that run flush past the exit overlap."""
+    """All walls for a wire of `radius` (m). seam_reach : m, by which walls that run flush past the exit overlap.
+    patches : of the vessel, with a friction of their own; walls are divided where one begins or ends."""
     lines = vessel_polylines(outline, tube)
-    flush = [_is_flush(lines, lip) for lip in _lips(tube)]
-    polylines = [_vessel_line(line, closed, tube, seam_reach) for line, closed in lines]
-    polylines += _tube_polylines(tube, flush, seam_reach)
-    parts = [_segments(line, radius, tube_friction if line.tube else friction) for line in polylines]
+    flush = [not tube.walled or _is_flush(lines, lip) for lip in _lips(tube)]
+    shortest = radius / 4
+    polylines = [
+        _vessel_line(divided(line, patches, shortest, closed=closed), closed, tube, seam_reach)
+        for line, closed in lines
+    ]
+    if tube.walled:
+        polylines += _tube_polylines(tube, flush, seam_reach)
+    if not polylines:
+        return _no_walls()
+    parts = [_segments(line, radius) for line in polylines]
     corners = [_corners(line) for line in polylines]
     lips = np.array([lip for lip, is_flush in zip(_lips(tube), flush, strict=True) if not is_flush]).reshape(-1, 2)
     corner = np.concatenate([*corners, lips])
     corner_tube = np.arange(len(corner)) >= len(corner) - len(lips)
     joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    middle = joined["start"] + joined["tangent"] * joined["length"][:, None] / 2
     return Walls(
         **joined,
+        friction=np.where(joined["tube"], tube_friction, friction_at(middle, patches, friction)),
         corner=corner,
-        corner_friction=np.where(corner_tube, tube_friction, friction),
+        corner_friction=np.where(corner_tube, tube_friction, friction_at(corner, patches, friction)),
         corner_tube=corner_tube,
     )
+
+
+def _no_walls() -> Walls:
+    plane, line = np.zeros((0, 2)), np.zeros(0)
+    no, none = np.zeros(0, np.bool_), np.zeros(0, np.int32)
+    return Walls(plane, plane, line, line, line, line, line, none, line, no, plane, line, no)
 
 
 def vessel_polylines(outline: Outline, tube: Tube) -> list[tuple[Floats, bool]]:
@@ -227,40 +259,55 @@ def _corners(line: _Polyline) -> Floats:
     return found
 
 
-def _segments(line: _Polyline, radius: float, friction: float) -> dict[str, NDArray[np.generic]]:
+def _segments(line: _Polyline, radius: float) -> dict[str, NDArray[Any]]:
     points, turns = line.points, _turns(line)
     count = len(points) if line.closed else len(points) - 1
     edge = (np.roll(points, -1, axis=0) - points)[:count]
     length = np.hypot(*edge.T)
-    # What each end is: (sharp, how far it reaches on).
-    before = [_end(turns[i], radius) for i in range(count)]
-    after = [_end(turns[(i + 1) % len(points)], radius) for i in range(count)]
+    ends = [_end(turns[i], radius, float(min(length[i - 1], length[i % count]))) for i in range(len(points))]
+    before, after = ends[:count], [ends[(i + 1) % len(points)] for i in range(count)]
     if not line.closed:
-        before[0] = line.sharp_ends[0], line.ends_reach[0]
-        after[-1] = line.sharp_ends[1], line.ends_reach[1]
-    reach_lo, reach_hi = np.array([r for _, r in before]), np.array([r for _, r in after])
-    fade = np.minimum(radius / 2, length / 3)
+        before[0] = _End(line.sharp_ends[0], line.ends_reach[0])
+        after[-1] = _End(line.sharp_ends[1], line.ends_reach[1])
     return {
         "start": points[:count],
         "tangent": edge / length[:, None],
         "length": length,
-        "lo": -reach_lo,
-        "hi": length + reach_hi,
-        "fade_lo": np.where(reach_lo > 0, np.minimum(fade, reach_lo), fade),
-        "fade_hi": np.where(reach_hi > 0, np.minimum(fade, reach_hi), fade),
-        "sharp": np.array([s0 + 2 * s1 for (s0, _), (s1, _) in zip(before, after, strict=True)], np.int32),
-        "friction": np.full(count, friction),
+        "lo": np.array([-end.reach for end in before]),
+        "hi": length + [end.reach for end in after],
+        "fade_lo": np.array([end.fade(radius, x) for end, x in zip(before, length, strict=True)]),
+        "fade_hi": np.array([end.fade(radius, x) for end, x in zip(after, length, strict=True)]),
+        "sharp": np.array([a.sharp + 2 * b.sharp for a, b in zip(before, after, strict=True)], np.int32),
         "tube": np.full(count, line.tube),
     }
 
 
-def _end(turn: float, radius: float) -> tuple[bool, float]:
-    """(sharp, how far it reaches on, m) of a wall's end at a corner.
+@dataclass(frozen=True)
+class _End:
+    """An end of a wall. sharp : it points into the lumen. reach : m, how far the wall reaches on. shared : within twice
+    the reach it hands over to its neighbour, the two weights summing to one."""
+
+    sharp: bool
+    reach: float
+    shared: bool = False
+
+    def fade(self, radius: float, length: float) -> float:
+        """Width, m, over which the contact with a wall of `length` (m) fades."""
+        if self.shared:
+            return 2 * self.reach
+        fade = min(radius / 2, length / 3)
+        return min(fade, self.reach) if self.reach > 0 else fade
+
+
+def _end(turn: float, radius: float, shorter: float) -> _End:
+    """The end of a wall at a corner whose shorter wall has the length `shorter`, m.
 
     At a pocket a wall reaches on, but never deeper than half a radius behind its neighbour: across a thin septum its
     end would else stand in the next lumen.
     """
     if turn < -_SHARP_FROM:
-        return True, 0.0
+        return _End(True, 0.0)
+    if turn < _SHARED_TO:
+        return _End(False, min(radius / 2, shorter / 3), shared=True)
     sine = math.sin(min(turn, math.pi / 2))
-    return False, min(_REACH_PAST_POCKET, radius / 2 / max(sine, 1e-9))
+    return _End(False, min(_REACH_PAST_POCKET, radius / 2 / max(sine, 1e-9)))

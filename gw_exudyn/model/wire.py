@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from gw_exudyn.scenario import StiffnessPiece, WireSpec
+    from gw_exudyn.scenario.friction import FrictionStretch
 
 Floats = NDArray[np.float64]
 
@@ -31,6 +32,8 @@ class Wire:
     joint_stiffness : (n,), N m/rad. joint_damping : (n,), N m s/rad. rest_angle : (n,), rad, the angle of segment i
         against segment i - 1 (joint 0: against the catheter) without load, counter-clockwise.
     node_arc_length : (n + 1,), m, from the tip; node i is the proximal end of segment i, node n the tip.
+    friction_factor : (n + 1,), at the nodes, linear in between; a wall's friction coefficient times this is that of the
+        contact.
     """
 
     radius: float
@@ -41,6 +44,7 @@ class Wire:
     joint_damping: Floats
     rest_angle: Floats
     node_arc_length: Floats
+    friction_factor: Floats
 
     @property
     def segments(self) -> int:
@@ -64,7 +68,7 @@ def build_wire(spec: WireSpec) -> Wire:
     nodes = np.concatenate([[0.0], np.cumsum(lengths[::-1])])[::-1].copy()
     nodes[0] = spec.length  # without the sum's rounding: the clamp's stretch ends where stiffness and tip shape may
     far, near = joint_regions(nodes)
-    stiffness = 1 / compliance(spec.bending_stiffness, near, far)
+    stiffness = 1 / compliance(spec.effective_stiffness, near, far)
     radius = spec.diameter / 2
     mass = spec.density * math.pi * radius**2 * lengths
     return Wire(
@@ -76,6 +80,7 @@ def build_wire(spec: WireSpec) -> Wire:
         joint_damping=spec.damping_time * stiffness,
         rest_angle=rest_angles(spec, near, far),
         node_arc_length=nodes,
+        friction_factor=friction_factors(spec.friction, nodes),
     )
 
 
@@ -112,6 +117,19 @@ def compliance(pieces: Sequence[StiffnessPiece], near: Floats, far: Floats) -> F
         factor = np.where(small, 1.0, np.log1p(ratio) / np.where(small, 1.0, ratio))
         total += (high - low) / at_low * factor
     return total
+
+
+def friction_factors(stretches: Sequence[FrictionStretch], nodes: Floats) -> Floats:
+    """(n + 1,): the factor at each node, its mean over the half segments beside it, so that no stretch is lost.
+
+    nodes : (n + 1,), m from the tip, the proximal end first.
+    """
+    bounds = np.concatenate([nodes[:1], (nodes[:-1] + nodes[1:]) / 2, nodes[-1:]])
+    factors = np.ones(len(nodes))
+    for stretch in stretches:
+        covered = np.diff(np.clip(bounds, stretch.start, stretch.end)) / np.diff(bounds)
+        factors += (stretch.factor - 1) * covered
+    return factors
 
 
 def rest_angles(spec: WireSpec, near: Floats, far: Floats) -> Floats:

@@ -5,6 +5,8 @@ Each `plot_*` returns a matplotlib Figure and touches neither a display nor matp
 writes all of a run.
 """
 
+from gw_exudyn.plots.animation import save_animation
+from gw_exudyn.plots.comparison import plot_comparison
 from gw_exudyn.plots.contact_map import plot_contact_map
 from gw_exudyn.plots.energy import plot_energy
 from gw_exudyn.plots.forces import plot_forces
@@ -14,11 +16,13 @@ from gw_exudyn.plots.tip_path import plot_tip_path
 
 __all__ = [
     "FIGURES",
+    "plot_comparison",
     "plot_contact_map",
     "plot_energy",
     "plot_forces",
     "plot_insertion",
     "plot_tip_path",
+    "save_animation",
     "save_figure",
     "save_figures",
 ]

@@ -12,7 +12,7 @@ from pydantic import Field, ValidationError
 
 from gw_exudyn.errors import ScenarioError
 from gw_exudyn.scenario.fields import Choice, Section, Text
-from gw_exudyn.scenario.kinds import ARC_LENGTH, BENDING_STIFFNESS, DENSITY, WIRE_DIAMETER, WIRE_LENGTH
+from gw_exudyn.scenario.kinds import ARC_LENGTH, BENDING_STIFFNESS_OR_NONE, DENSITY, WIRE_DIAMETER, WIRE_LENGTH
 from gw_exudyn.scenario.problems import problems_of
 from gw_exudyn.scenario.stiffness import StiffnessPiece
 from gw_exudyn.scenario.yaml_source import parse_yaml
@@ -49,14 +49,21 @@ class SourcedDensity(_Sourced):
 
 class SourcedPiece(Section):
     """Bending stiffness of one stretch: start, end in m from the tip; value, and low and high of what to sweep, in N
-    m^2.
+    m^2. Where only a range is known, value is None; where no spread is known, low and high are.
     """
 
     start: Annotated[float, ARC_LENGTH] = Field(alias="from")
     end: Annotated[float, ARC_LENGTH] = Field(alias="to")
-    value: Annotated[float, BENDING_STIFFNESS]
-    low: Annotated[float, BENDING_STIFFNESS]
-    high: Annotated[float, BENDING_STIFFNESS]
+    value: Annotated[float | None, BENDING_STIFFNESS_OR_NONE] = None
+    low: Annotated[float | None, BENDING_STIFFNESS_OR_NONE] = None
+    high: Annotated[float | None, BENDING_STIFFNESS_OR_NONE] = None
+
+    def at(self, estimate: str) -> float:
+        """The `best`, `low` or `high` bending stiffness, N m^2: the middle of a range that has no best; the best where
+        no spread is known."""
+        best = self.value if self.value is not None else (self.low + self.high) / 2  # type: ignore[operator]
+        given = {"best": self.value, "low": self.low, "high": self.high}[estimate]
+        return best if given is None else given
 
 
 class SourcedStiffness(_Sourced):
@@ -69,18 +76,21 @@ class CatalogueWire(Section):
     """One wire of the catalogue."""
 
     title: Annotated[str, Text("title")]
+    part: Annotated[str, Choice(("whole", "shaft"))] = "whole"
+    """`shaft`: the stiff part alone, whose tip is not known."""
     diameter: SourcedDiameter
     length: SourcedLength
     density: SourcedDensity
     bending_stiffness: SourcedStiffness
 
-    def stiffness_pieces(self, bound: str = "value") -> tuple[StiffnessPiece, ...]:
-        """The bending stiffness in pieces from the tip: the `value`, or the `low` or `high` bound of what to sweep."""
-        pieces = []
-        for piece in self.bending_stiffness.pieces:
-            value: float = {"value": piece.value, "low": piece.low, "high": piece.high}[bound]
-            pieces.append(StiffnessPiece(start=piece.start, end=piece.end, value=value, value_end=value))
-        return tuple(pieces)
+    def stiffness_pieces(self, estimate: str = "best") -> tuple[StiffnessPiece, ...]:
+        """The bending stiffness in pieces from the tip: the `best` estimate, or the `low` or `high` bound of what to
+        sweep.
+        """
+        return tuple(
+            StiffnessPiece(start=piece.start, end=piece.end, value=piece.at(estimate), value_end=piece.at(estimate))
+            for piece in self.bending_stiffness.pieces
+        )
 
 
 class _Catalogue(Section):

@@ -1,18 +1,21 @@
-"""The drive of a scenario: what moves the proximal end. Every form becomes one table."""
+"""The drive of a scenario: what moves the proximal end. Every form of a prescribed speed becomes one table."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
-from gw_exudyn.scenario.fields import Choice, Faults, Form, Section, wrong
+from gw_exudyn.scenario.course import check_table
+from gw_exudyn.scenario.fields import KIND_TAG, Choice, Faults, Form, Section, wrong
+from gw_exudyn.scenario.hold import Hold, Start
 from gw_exudyn.scenario.kinds import DURATION, RAMP, SPEED, SPEED_OR_NONE, SPEED_TABLE, TRAVEL
+from gw_exudyn.scenario.other_drives import ForceDrive, ForceForm, TipSpeedDrive, TipSpeedForm
 from gw_exudyn.scenario.units import format_quantity
-from gw_exudyn.scenario.words import plural
+from gw_exudyn.scenario.words import plural, shown
 
-DRIVE_KINDS = Choice(("speed",), later=("force", "tip_speed"))
+DRIVE_KINDS = Choice(("speed", "force", "tip_speed"))
 LONGEST = 1e5
 """s, of a whole drive."""
 
@@ -24,11 +27,15 @@ class SpeedDrive(Section):
 
     time : s, begins at 0, never falls; two equal times make a step. speed : m/s, as many; positive pushes in. The
         drive ends at time[-1].
+    start : m, length inserted at the start. hold : of the proximal end: `clamped`, `pinned` (it may turn), `axial` (it
+        may also move square to the axis).
     """
 
     kind: Literal["speed"] = "speed"
     time: tuple[float, ...]
     speed: tuple[float, ...]
+    start: float = 0.0
+    hold: str = "clamped"
 
     @property
     def duration(self) -> float:
@@ -37,7 +44,8 @@ class SpeedDrive(Section):
 
     def to_plain(self) -> dict[str, Any]:
         """The drive as a file could hold it: its table."""
-        return {"kind": self.kind, "table": [list(row) for row in zip(self.time, self.speed, strict=True)]}
+        table = [list(row) for row in zip(self.time, self.speed, strict=True)]
+        return {"kind": self.kind, "start": self.start, "hold": self.hold, "table": table}
 
 
 class PhaseForm(Section):
@@ -70,7 +78,7 @@ class DriveForm(Section):
 
     what: ClassVar[str] = "the drive"
 
-    kind: Annotated[Literal["speed"], DRIVE_KINDS]
+    kind: Literal["speed"]
     speed: Annotated[float | None, SPEED_OR_NONE] = Field(
         default=None, description="one constant speed; positive pushes in"
     )
@@ -85,6 +93,8 @@ class DriveForm(Section):
     table: Annotated[tuple[tuple[float, float], ...] | None, SPEED_TABLE] = Field(
         default=None, description="[[time, speed], ...] from time 0, linear in between; two equal times make a step"
     )
+    start: Start = 0.0
+    hold: Hold = "clamped"
 
     @field_validator("phases", mode="before")
     @classmethod
@@ -112,12 +122,15 @@ class DriveForm(Section):
                 ("distance",), lambda travel: check_extent(self.speed or 0.0, travel, self.duration), self.distance
             )
         if self.table is not None:
-            _check_table(self.table, faults)
+            check_table(self.table, faults)
         faults.raise_if_any()
         return self
 
     def resolve(self) -> SpeedDrive:
         """The table of speed against time. Raises ValidationError for a phase that is shorter than its ramp."""
+        return self._table().model_copy(update={"start": self.start, "hold": self.hold})
+
+    def _table(self) -> SpeedDrive:
         if self.table is not None:
             return SpeedDrive(time=tuple(t for t, _ in self.table), speed=tuple(v for _, v in self.table))
         if self.phases is not None:
@@ -138,19 +151,6 @@ def check_extent(speed: float, distance: float | None, duration: float | None) -
         raise wrong("distance and duration are both given; give one of the two")
     if distance is not None and speed == 0:
         raise wrong("a speed of 0 covers no distance; give a duration to hold")
-
-
-def _check_table(rows: Sequence[tuple[float, float]], faults: Faults) -> None:
-    times = [time for time, _ in rows]
-    if times[0] != 0:
-        faults.add(("table", 0), f"begins at {times[0]:.6g} s; the first time is 0")
-    if times[-1] <= 0:
-        faults.add(("table", len(rows) - 1), "ends at 0 s; the drive must last")
-    for i in range(1, len(rows)):
-        if times[i] < times[i - 1]:
-            faults.add(("table", i), f"{times[i]:.6g} s comes after {times[i - 1]:.6g} s; times never fall")
-        elif i > 1 and times[i] == times[i - 2]:
-            faults.add(("table", i), f"a third row at {times[i]:.6g} s; two make a step")
 
 
 def _sequence(phases: Sequence[PhaseForm], places: Sequence[tuple[str | int, ...]]) -> SpeedDrive:
@@ -196,19 +196,36 @@ def _tidy(rows: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
     return kept
 
 
+def _tag(drive: Any) -> str:
+    kind = drive.get("kind") if isinstance(drive, dict) else getattr(drive, "kind", None)
+    return f"{KIND_TAG}{kind}"
+
+
+AnyForm = Annotated[
+    Annotated[DriveForm, Tag(f"{KIND_TAG}speed")]
+    | Annotated[ForceForm, Tag(f"{KIND_TAG}force")]
+    | Annotated[TipSpeedForm, Tag(f"{KIND_TAG}tip_speed")],
+    Discriminator(_tag),
+]
+"""What a file may hold."""
+
+
 def _check_drive(drive: Any) -> None:
-    """The kind first: of a kind that is not built, the other keys mean nothing yet."""
-    if isinstance(drive, dict):
-        faults = Faults()
-        if "kind" not in drive:
-            faults.add(
-                ("kind",),
-                wrong(f"is missing: what the drive is; allowed: {', '.join(DRIVE_KINDS.words)}", missing=True),
-            )
-        else:
-            faults.read(("kind",), DRIVE_KINDS.read, drive["kind"])
-        faults.raise_if_any()
+    """The kind first: it says what the other keys mean."""
+    allowed = ", ".join(DRIVE_KINDS.words)
+    if not isinstance(drive, dict):
+        found = "is empty; a drive is needed" if drive is None else f"{shown(drive)} stands where a drive is needed"
+        raise wrong(f"{found}: lines of 'key: value', the first kind: {allowed.replace(', ', ' | ')}")
+    faults = Faults()
+    if "kind" not in drive:
+        faults.add(("kind",), wrong(f"is missing: what the drive is; allowed: {allowed}", missing=True))
+    else:
+        faults.read(("kind",), DRIVE_KINDS.read, drive["kind"])
+    faults.raise_if_any()
 
 
-Drive = Annotated[SpeedDrive, Form(DriveForm, (SpeedDrive,), check=_check_drive)]
+Drive = Annotated[
+    SpeedDrive | ForceDrive | TipSpeedDrive,
+    Form(AnyForm, (SpeedDrive, ForceDrive, TipSpeedDrive), check=_check_drive),
+]
 """The drive as the program sees it, read from any of the forms."""

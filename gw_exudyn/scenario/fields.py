@@ -110,7 +110,7 @@ class Quantity(Kind):
 
     unit : its SI unit. low, high : the plausible, in SI, both allowed. usual : the unit in which limits are told.
     also : other SI units whose dimension is taken. auto : the word `auto` stands for None. optional : so does nothing
-        at all.
+        at all. off : the word `off` stands for infinite.
     """
 
     unit: str
@@ -120,13 +120,23 @@ class Quantity(Kind):
     also: tuple[str, ...] = ()
     auto: bool = False
     optional: bool = False
+    off: bool = False
+
+    @property
+    def words(self) -> dict[str, float | None]:
+        """The words that may stand for a value, and the value of each."""
+        return ({"auto": None} if self.auto else {}) | ({"off": math.inf} if self.off else {})
+
+    def word_for(self, value: float | None) -> str:
+        """The word that stands for a value; empty where none does."""
+        return next((word for word, meaning in self.words.items() if meaning == value), "")
 
     def read(self, value: Any) -> float | None:
         """The value in SI."""
-        if (value is None and (self.optional or self.auto)) or (
-            self.auto and isinstance(value, str) and value == "auto"
-        ):
+        if value is None and (self.optional or self.auto):
             return None
+        if isinstance(value, str) and value in self.words:
+            return self.words[value]
         if isinstance(value, str):
             number = self._from_text(value)
         elif is_number(value):
@@ -141,11 +151,12 @@ class Quantity(Kind):
         try:
             return parse_quantity(text, self.unit, *self.also)
         except UnitError as error:
-            auto = "; or write auto" if self.auto else ""
-            raise wrong(f"{error}{auto}") from None
+            word = f"; or write {' or '.join(self.words)}" if self.words else ""
+            raise wrong(f"{error}{word}") from None
 
     def _example(self) -> str:
-        return ("auto, or " if self.auto else "") + f"a number in SI ({self.unit}) or text such as '2.5 {self.usual}'"
+        words = "".join(f"{word}, or " for word in self.words)
+        return f"{words}a number in SI ({self.unit}) or text such as '2.5 {self.usual}'"
 
     def _implausible(self, value: Any, number: float) -> str:
         limits = f"{self.limit(self.low)} to {self.limit(self.high)}"
@@ -168,8 +179,7 @@ class Quantity(Kind):
             {"type": "number", "minimum": self.low, "maximum": self.high, "description": f"in SI: {self.unit}"},
             {"type": "string", "pattern": r"^\s*[+-]?[0-9.]", "description": f"number, space, unit: {units}"},
         ]
-        if self.auto:
-            options.append({"const": "auto"})
+        options += [{"const": word} for word in self.words]
         if self.optional or self.auto:
             options.append({"type": "null"})
         return {"anyOf": options}
@@ -232,9 +242,12 @@ class Choice(Kind):
 
     words: tuple[str, ...]
     later: tuple[str, ...] = ()
+    optional: bool = False
 
-    def read(self, value: Any) -> str:
+    def read(self, value: Any) -> str | None:
         """The word."""
+        if value is None and self.optional:
+            return None
         allowed = f"allowed: {', '.join(self.words)}"
         if isinstance(value, str) and value in self.words:
             return value
@@ -245,7 +258,23 @@ class Choice(Kind):
 
     def json(self) -> dict[str, Any]:
         """An enumeration."""
-        return {"enum": list(self.words)} if len(self.words) > 1 else {"const": self.words[0]}
+        words = [*self.words, None] if self.optional else list(self.words)
+        return {"enum": words} if len(words) > 1 else {"const": words[0]}
+
+
+@dataclass(frozen=True)
+class Flag(Kind):
+    """Yes or no: true or false."""
+
+    def read(self, value: Any) -> bool:
+        """The flag."""
+        if not isinstance(value, bool):
+            raise wrong(f"{shown(value)} is neither true nor false")
+        return value
+
+    def json(self) -> dict[str, Any]:
+        """A boolean."""
+        return {"type": "boolean"}
 
 
 @dataclass(frozen=True)
@@ -365,14 +394,14 @@ class Section(BaseModel):
 
     def to_plain(self) -> dict[str, Any]:
         """The section as a scenario file could hold it: SI numbers, text and lists only. What is None is left out, or
-        `auto`.
+        the word for it (`auto`, `off`).
         """
         plain: dict[str, Any] = {}
         for name, info in type(self).model_fields.items():
             value = getattr(self, name)
-            auto = any(isinstance(kind, Quantity) and kind.auto for kind in info.metadata)
-            if value is not None or auto:
-                plain[info.alias or name] = "auto" if value is None else to_plain(value)
+            word = next((kind.word_for(value) for kind in info.metadata if isinstance(kind, Quantity)), "")
+            if value is not None or word:
+                plain[info.alias or name] = word or to_plain(value)
         return plain
 
 

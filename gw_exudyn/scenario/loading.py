@@ -15,6 +15,7 @@ from gw_exudyn.errors import Problem, ScenarioError
 from gw_exudyn.scenario.overrides import Overrides, apply_overrides
 from gw_exudyn.scenario.problems import in_order, problems_of
 from gw_exudyn.scenario.schema import Scenario, with_places
+from gw_exudyn.scenario.shared_vessel import insert_vessel
 from gw_exudyn.scenario.shipped import resolve
 from gw_exudyn.scenario.yaml_source import YamlSource, read_yaml
 
@@ -54,6 +55,7 @@ def scenario_from_dict(
 
 
 def _checked(source: YamlSource, overrides: Overrides, folder: Path) -> Scenario:
+    insert_vessel(source, folder)
     if overrides:
         apply_overrides(source, overrides, lambda: _validated(source, folder).to_dict())
     scenario = _validated(source, folder)
@@ -66,6 +68,8 @@ def _validated(source: YamlSource, folder: Path) -> Scenario:
         scenario = Scenario.model_validate(source.data, context={"folder": folder})
     except ValidationError as error:
         told = {problem.path for problem in problems if problem.path}  # what the text got wrong is no second mistake
+        if any(path.startswith("vessel.file") for path in told):
+            told.add("vessel")  # the vessel's own file could not be read: that is the one mistake
         problems += [problem for problem in problems_of(error, source.places) if problem.path not in told]
     if problems:
         raise ScenarioError(in_order(problems))

@@ -19,7 +19,7 @@ from gw_exudyn.scenario.yaml_source import read_text
 Points = tuple[tuple[float, float], ...]
 
 MOST_POINTS = 100_000
-_LARGEST_CSV = 20_000_000  # bytes
+LARGEST_FILE = 20_000_000  # bytes
 _SAME_POINT = 1e-9  # m
 _SMALLEST_SPAN, _LARGEST_SPAN = 1e-4, 10.0  # m, of the outline's larger side
 _SHOWN_FAULTS = 20
@@ -33,13 +33,26 @@ class Outline:
 
     points : ((x, y), ...), m; the first is not repeated at the end. open_edges : indices of the edges, point i to
         point i + 1, that are open ends. file, lines : the CSV file and the line of each point; empty if they were
-        given in the scenario.
+        given in the scenario. commands : for each point the edge that begins there as a person counts it, where a
+        curve is one edge but several points; empty if every edge is straight.
     """
 
     points: Points
     open_edges: tuple[int, ...] = ()
     file: str | None = None
     lines: tuple[int, ...] = field(default=(), compare=False)
+    commands: tuple[int, ...] = ()
+
+    @property
+    def edges(self) -> int:
+        """How many edges a person counts."""
+        return self.commands[-1] + 1 if self.commands else len(self.points)
+
+    def among_points(self, edges: Sequence[int]) -> tuple[int, ...]:
+        """Edges as a person counts them, as edges between points."""
+        if not self.commands:
+            return tuple(edges)
+        return tuple(i for i, command in enumerate(self.commands) if command in edges)
 
 
 def read_outline(path: Path) -> Outline:
@@ -54,11 +67,11 @@ def read_outline(path: Path) -> Outline:
         with the file and the line of what is wrong.
     """
     try:
-        text = read_text(path, _LARGEST_CSV)
+        text = read_text(path, LARGEST_FILE)
     except ScenarioError as error:
         problem = error.problems[0]
         raise wrong(f"{path_text([str(path)], longest=300)}: {problem.message}") from None
-    rows = _rows(text, str(path))
+    rows = csv_rows(text, str(path))
     if not rows:
         raise wrong(f"is empty; a header is needed, {_FORM}, then one point a line", file=str(path), line=1)
     columns, units = _header(*rows[0], str(path))
@@ -67,7 +80,7 @@ def read_outline(path: Path) -> Outline:
     return _outline(rows[1:], columns, units, str(path))
 
 
-def _rows(text: str, file: str) -> list[tuple[int, list[str]]]:
+def csv_rows(text: str, file: str) -> list[tuple[int, list[str]]]:
     """Line number and cells of every row that is not empty and no comment."""
     rows = []
     for number, line in enumerate(text.splitlines(), 1):
@@ -88,7 +101,7 @@ def _header(line: int, cells: list[str], file: str) -> tuple[list[str], dict[str
             hint = "; separate with commas, not semicolons" if ";" in cell else ""
             raise wrong(f"header {shown(cell)} is not understood{hint}; write {_FORM}", file=file, line=line)
         columns.append(match.group(1).lower())
-        units[columns[-1]] = _length_unit(match.group(2) or "m", file, line)
+        units[columns[-1]] = header_unit(match.group(2) or "m", file, line)
     if sorted(columns) not in (["x", "y"], ["open", "x", "y"]):
         raise wrong(f"header has the columns {', '.join(columns)}; write {_FORM}", file=file, line=line)
     if units["x"] != units["y"]:
@@ -96,7 +109,8 @@ def _header(line: int, cells: list[str], file: str) -> tuple[list[str], dict[str
     return columns, units
 
 
-def _length_unit(text: str, file: str, line: int) -> Unit:
+def header_unit(text: str, file: str, line: int) -> Unit:
+    """The unit of length that a column's head names."""
     try:
         unit = parse_unit(text)
     except UnitError as error:
@@ -156,7 +170,11 @@ def closed(outline: Outline) -> Outline:
         return outline
     last = len(points) - 1
     return Outline(
-        points[:-1], tuple(edge for edge in outline.open_edges if edge < last), outline.file, outline.lines[:-1]
+        points[:-1],
+        tuple(edge for edge in outline.open_edges if edge < last),
+        outline.file,
+        outline.lines[:-1],
+        outline.commands[:-1],
     )
 
 
@@ -170,7 +188,7 @@ def check_outline(outline: Outline) -> None:
     repeated = [i for i in range(len(points)) if math.dist(points[i], points[i - 1]) <= _SAME_POINT]
     for i in repeated[:_SHOWN_FAULTS]:
         note(i, f"repeats the point before it, {_xy(points[i])}; remove one")
-    _check_span(points, note)
+    _check_span(outline, note)
     if not repeated:
         _check_simple(points, note)
     faults.raise_if_any()
@@ -181,7 +199,7 @@ def _noter(faults: Faults, outline: Outline) -> Callable[[int | None, str], None
 
     def note(i: int | None, message: str) -> None:
         if outline.file is not None:
-            line = outline.lines[i] if i is not None and outline.lines else 1
+            line = (outline.lines[i] if i is not None else 1) if outline.lines else None
             faults.add((), wrong(message, file=outline.file, line=line))
         else:
             faults.add(() if i is None else (i,), message)
@@ -189,12 +207,14 @@ def _noter(faults: Faults, outline: Outline) -> Callable[[int | None, str], None
     return note
 
 
-def _check_span(points: Points, note: Callable[[int | None, str], None]) -> None:
-    spans = [max(column) - min(column) for column in zip(*points, strict=True)]
+def _check_span(outline: Outline, note: Callable[[int | None, str], None]) -> None:
+    spans = [max(column) - min(column) for column in zip(*outline.points, strict=True)]
     if not _SMALLEST_SPAN <= max(spans) <= _LARGEST_SPAN:
         size = " by ".join(format_quantity(span, "m") for span in spans)
         limits = f"{format_quantity(_SMALLEST_SPAN, 'mm')} to {format_quantity(_LARGEST_SPAN, 'm')}"
         remedy = "bare numbers are metres: write the unit, 'x [mm],y [mm]' in a CSV file, '1 mm' in a list"
+        if outline.file is not None and not outline.file.lower().endswith(".csv"):
+            remedy = "look for a slip in unit or length beside file"
         note(None, f"the outline measures {size}, plausible is {limits}; {remedy}")
 
 

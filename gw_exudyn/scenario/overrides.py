@@ -104,8 +104,15 @@ def _key(node: Any, parts: list[str], depth: int, place: str) -> Any:
         )
     if not node:
         raise ScenarioError(Problem(path, f"{parent} is an empty list; set it as a whole", place))
+    names = [item.get("name") if isinstance(item, dict) else None for item in node]
+    if part in names:
+        parts[depth] = str(names.index(part))  # so that it is the item's own place in what follows
+        return int(parts[depth])
     if not _is_index(part) or len(part) > 9 or int(part) >= len(node):
-        allowed = f"{parent} has {plural(len(node), 'item')}, 0 to {len(node) - 1}"
+        known = ", ".join(name for name in names if isinstance(name, str))
+        allowed = (
+            f"{parent} has {plural(len(node), 'item')}, 0 to {len(node) - 1}{f', or by name {known}' if known else ''}"
+        )
         raise ScenarioError(Problem(path, f"there is no item {shown(part)}; {allowed}", place))
     return int(part)
 

@@ -4,12 +4,22 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, NoReturn, Self
 
 from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
+from gw_exudyn.scenario.branches import BranchesVessel
+from gw_exudyn.scenario.centreline import CentrelineForm
 from gw_exudyn.scenario.fields import KIND_TAG, Choice, Faults, Form, Section, Table, Text, Whole, wrong
-from gw_exudyn.scenario.kinds import ANGLE, ARC_RADIUS, LEAD_LENGTH, POINT, VESSEL_DIAMETER, VESSEL_LENGTH
+from gw_exudyn.scenario.kinds import (
+    ANGLE,
+    ARC_RADIUS,
+    DRAWING_LENGTH,
+    LEAD_LENGTH,
+    POINT,
+    VESSEL_DIAMETER,
+    VESSEL_LENGTH,
+)
 from gw_exudyn.scenario.outline import (
     MOST_POINTS,
     Outline,
@@ -17,17 +27,28 @@ from gw_exudyn.scenario.outline import (
     check_outline,
     closed,
     counter_clockwise,
-    read_outline,
 )
+from gw_exudyn.scenario.regions import Lumen, Region
 from gw_exudyn.scenario.words import shown
 
-VESSEL_KINDS = Choice(("straight", "arc", "polygon"), later=("branches", "centreline"))
+VESSEL_KINDS = Choice(("straight", "arc", "branches", "centreline", "polygon", "file", "none"))
 _STEEPEST_FACET = math.radians(45)
 
 _END = Field(default="open", description="open: the far end is no wall; dead: it is closed")
 
 
-class StraightVessel(Section):
+class NoVessel(Lumen):
+    """No vessel: nothing stands in the wire's way."""
+
+    what: ClassVar[str] = "no vessel"
+
+    kind: Annotated[Literal["none"], Choice(("none",))]
+
+    def _regions(self) -> tuple[Region, ...]:
+        return ()
+
+
+class StraightVessel(Lumen):
     """A straight channel: its lumen is 0 <= x <= length, abs(y) <= diameter / 2.
 
     length, diameter : m. end : `open`, no wall at x = length, or `dead`.
@@ -40,8 +61,12 @@ class StraightVessel(Section):
     diameter: Annotated[float, VESSEL_DIAMETER] = Field(description="width of the lumen", examples=["4 mm"])
     end: Annotated[str, Choice(("open", "dead"))] = _END
 
+    def _whole(self) -> list[tuple[float, float]]:
+        half = self.diameter / 2
+        return [(0.0, -half), (self.length, -half), (self.length, half), (0.0, half)]
 
-class ArcVessel(Section):
+
+class ArcVessel(Lumen):
     """A channel whose centreline runs `lead_in` along +x from the origin, turns on an arc, and goes straight on.
 
     radius : m, of the centreline. angle : rad, positive to the left. diameter, lead_in, lead_out : m, lead_out
@@ -95,7 +120,7 @@ class ArcVessel(Section):
     def _keeps_clear_of_itself(self) -> Self:
         import shapely
 
-        if not shapely.Polygon(self._walls()).is_valid:
+        if not shapely.Polygon(self._whole()).is_valid:
             faults = Faults()
             faults.add(
                 ("angle",),
@@ -104,7 +129,7 @@ class ArcVessel(Section):
             faults.raise_if_any()
         return self
 
-    def _walls(self) -> list[tuple[float, float]]:
+    def _whole(self) -> list[tuple[float, float]]:
         """Points of the right wall, then of the left wall back, m."""
         side = math.copysign(1.0, self.angle)
         course = [(0.0, 0.0, 0.0)] if self.lead_in > 0 else []
@@ -122,7 +147,7 @@ class ArcVessel(Section):
         return [(round(x, 14), round(y, 14)) for x, y in right + left[::-1]]
 
 
-class PolygonVessel(Section):
+class PolygonVessel(Lumen):
     """A lumen with a closed outline.
 
     points : ((x, y), ...), m, counter-clockwise, the first not repeated at the end. open_edges : indices of the edges
@@ -133,16 +158,29 @@ class PolygonVessel(Section):
     points: Points
     open_edges: tuple[int, ...] = ()
 
+    def _whole(self) -> Points:
+        return self.points
+
 
 class PolygonForm(Section):
-    """A lumen with a closed outline, from a CSV file or a list of points."""
+    """A lumen with a closed outline, from a CSV, WKT, GeoJSON or SVG file, or a list of points."""
 
     what: ClassVar[str] = "a polygon vessel"
 
     kind: Annotated[Literal["polygon"], Choice(("polygon",))]
+    unit: Annotated[str | None, Text("unit", optional=True)] = Field(
+        default=None, description="unit of the coordinates in a WKT or GeoJSON file", examples=["mm"]
+    )
+    length: Annotated[float | None, DRAWING_LENGTH] = Field(
+        default=None, description="width of the viewBox of an SVG file", examples=["120 mm"]
+    )
+    id: Annotated[str | None, Text("id", optional=True)] = Field(
+        default=None, description="id of the lumen's path in an SVG file that has several"
+    )
     file: Annotated[Outline | None, Text("file name", optional=True)] = Field(
         default=None,
-        description="CSV file, relative to this; header x,y (metres) or x [mm],y [mm]; a column open marks open ends",
+        description="CSV, WKT, GeoJSON or SVG file, relative to this; CSV: header x,y (metres) or x [mm],y [mm], "
+        "and a column open that marks open ends",
     )
     points: Annotated[Points | None, Table(POINT, 3, MOST_POINTS, "point", optional=True)] = Field(
         default=None, validate_default=True, description="corners of the outline in order"
@@ -154,9 +192,14 @@ class PolygonForm(Section):
     @field_validator("file", mode="after")
     @classmethod
     def _read(cls, name: Any, info: ValidationInfo) -> Outline | None:
+        from gw_exudyn.scenario.outline_files import read_any_outline
+
         if name is None:
             return None
-        outline = read_outline(Path((info.context or {}).get("folder", "."), str(name)))
+        if not {"unit", "length", "id"} <= info.data.keys():
+            return None  # one of them is wrong itself, which is told already
+        path = Path((info.context or {}).get("folder", "."), str(name))
+        outline = read_any_outline(path, info.data["unit"], info.data["length"], info.data["id"])
         check_outline(outline)
         return outline
 
@@ -184,7 +227,7 @@ class PolygonForm(Section):
         outline, points = info.data.get("file"), info.data.get("points")
         if edges and outline is not None and outline.open_edges:
             raise wrong("stands beside the column 'open' of the file; give one of the two")
-        count = len(outline.points) if outline is not None else len(points or ())
+        count = outline.edges if outline is not None else len(points or ())
         faults = Faults()
         for i, edge in enumerate(edges):
             if count and edge >= count:
@@ -197,8 +240,25 @@ class PolygonForm(Section):
     def resolve(self) -> PolygonVessel:
         """The outline, counter-clockwise."""
         given = self.file or Outline(self.points or (), self.open_edges)
-        points, edges = counter_clockwise(given.points, given.open_edges or self.open_edges)
+        points, edges = counter_clockwise(given.points, given.open_edges or given.among_points(self.open_edges))
         return PolygonVessel(points=points, open_edges=edges)
+
+
+class VesselFile(Section):
+    """A vessel in a file of its own, which holds what would stand here. The loader puts it in this place."""
+
+    what: ClassVar[str] = "the file of a vessel"
+
+    kind: Annotated[Literal["file"], Choice(("file",))]
+    file: Annotated[str, Text("file name")] = Field(
+        description="YAML file, relative to this, with the keys of a vessel", examples=["vessels/phantom.yaml"]
+    )
+
+    def resolve(self) -> NoReturn:
+        """Not reached where a scenario is loaded."""
+        raise wrong(
+            "a vessel's file is read by load_scenario and scenario_from_dict only; load the scenario with these"
+        )
 
 
 def _tag(vessel: Any) -> str:
@@ -209,7 +269,11 @@ def _tag(vessel: Any) -> str:
 VesselForm = Annotated[
     Annotated[StraightVessel, Tag(f"{KIND_TAG}straight")]
     | Annotated[ArcVessel, Tag(f"{KIND_TAG}arc")]
-    | Annotated[PolygonForm, Tag(f"{KIND_TAG}polygon")],
+    | Annotated[BranchesVessel, Tag(f"{KIND_TAG}branches")]
+    | Annotated[CentrelineForm, Tag(f"{KIND_TAG}centreline")]
+    | Annotated[VesselFile, Tag(f"{KIND_TAG}file")]
+    | Annotated[PolygonForm, Tag(f"{KIND_TAG}polygon")]
+    | Annotated[NoVessel, Tag(f"{KIND_TAG}none")],
     Discriminator(_tag),
 ]
 """What a file may hold."""
@@ -229,7 +293,7 @@ def _check_kind(vessel: Any) -> None:
 
 
 Vessel = Annotated[
-    StraightVessel | ArcVessel | PolygonVessel,
-    Form(VesselForm, (StraightVessel, ArcVessel, PolygonVessel), check=_check_kind),
+    StraightVessel | ArcVessel | BranchesVessel | PolygonVessel | NoVessel,
+    Form(VesselForm, (StraightVessel, ArcVessel, BranchesVessel, PolygonVessel, NoVessel), check=_check_kind),
 ]
 """The vessel as the program sees it, read from any of the forms."""

@@ -56,6 +56,17 @@ def test_json_holds_status_and_metrics_with_units(gw, solver):
     assert len(run["figures"]) > 1
 
 
+@pytest.mark.parametrize("status", [status for status in Status if status.is_event])
+def test_a_run_that_an_event_ended_is_an_outcome_and_is_told(gw, solver, status):
+    solver.status = status
+    outcome = gw("run", "straight", "--quiet", "--no-figures")
+    assert outcome.code == 0
+    assert status.problem in outcome.err
+    assert status.remedy in outcome.err
+    run = read_run("results/runs/straight")
+    assert run.status.status is status
+
+
 @pytest.mark.parametrize("status", [status for status in Status if not status.trusted])
 def test_a_run_that_cannot_be_trusted_is_written_told_and_ends_with_4(gw, solver, status):
     solver.status = status

@@ -43,7 +43,17 @@ def plain_wire(lengths: ArrayLike, stiffness: float = 1e-3) -> Wire:
     nodes = np.concatenate([np.cumsum(length[::-1])[::-1], [0.0]])
     joints = np.full(len(length), stiffness)
     mass = 0.6e-3 * length
-    return Wire(RADIUS, length, mass, mass * length**2 / 12, joints, 0.02 * joints, np.zeros(len(length)), nodes)
+    return Wire(
+        RADIUS,
+        length,
+        mass,
+        mass * length**2 / 12,
+        joints,
+        0.02 * joints,
+        np.zeros(len(length)),
+        nodes,
+        np.ones(len(nodes)),
+    )
 
 
 def bare_walls(

@@ -6,6 +6,7 @@ Coordinates are scaled to lengths (angles times half a segment), so that all ent
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -28,6 +29,7 @@ Truncation (NUDGE / slip at Coulomb's limit)^2 ~ 3e-7, rounding 1e-18 m / NUDGE 
 TOLERANCE = 1e-6
 MU = 0.4
 RNG = np.random.default_rng(0)
+FACTORS = np.array([0.5, 2.0, 0.3, 1.5, 0.8])
 RATES = RNG.normal(size=(4, 3)) * [1e-3, 1e-3, 1.0]
 
 
@@ -161,6 +163,16 @@ def test_the_tangent_of_a_corner_on_the_wire(case, ratio):
     kink, seen, touching = CORNERS[case]
     wire, q, corner = wire_at(kink, seen)
     contact = at_rest(wire, bare_walls(corners=[corner], friction=MU), q)
+    slid(contact, q, directions(q), ratio)
+    assert_tangent_is_exact(contact, q, RATES, touching)
+
+
+@pytest.mark.parametrize("ratio", [0.2, 0.9, -1.0, 5.0])
+@pytest.mark.parametrize("case", CORNERS)
+def test_the_tangent_of_a_corner_where_the_wires_friction_changes(case, ratio):
+    kink, seen, touching = CORNERS[case]
+    wire, q, corner = wire_at(kink, seen)
+    contact = at_rest(replace(wire, friction_factor=FACTORS), bare_walls(corners=[corner], friction=MU), q)
     slid(contact, q, directions(q), ratio)
     assert_tangent_is_exact(contact, q, RATES, touching)
 

@@ -62,7 +62,7 @@ def test_a_constant_speed_starts_at_once():
 
 
 def test_the_fastest_speed_between_two_times_counts_both_ways_and_in_between():
-    end = float(PHASES.time[-1])
+    end = float(PHASES.course.time[-1])
     assert PHASES.fastest(0.0, end) == 4e-3
     peak = drive((0, 0), (1, -5e-3), (2, 0))
     assert peak.fastest(0.0, 2.0) == 5e-3

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from model_cases import LAW, RADIUS, at_rest, bare_walls, chain, plain_wire, scenario
 
-from gw_exudyn.model.energy import Energies, advanced, joint_moments, relative_angles, snapshot, wall_start
+from gw_exudyn.model.energy import Energies, advanced, joint_moments, relative_angles, snapshot
 from gw_exudyn.model.kernel import Motion
 from gw_exudyn.model.wire import build_wire
 
@@ -31,7 +31,7 @@ def taken(contact, q, *, push=0.0, travel=0.0, before=None, acceleration=None):
     old = snapshot(wire, contact.motion, push, 0.0)
     contact.start_step()
     contact.evaluate()
-    start = wall_start(contact)
+    start = contact.summary().energy
     contact.motion.set(q, (q - start_q) / STEP)
     contact.evaluate()
     if acceleration is None:
@@ -103,7 +103,7 @@ def test_sticking_costs_nothing_and_gives_all_back():
     q = chain(wire, (1e-3, RADIUS - 2 * LAW.toe), 0.0)
     contact = at_rest(wire, bare_walls(FLOOR, friction=MU), q)
     contact.evaluate()
-    stored = wall_start(contact).energy
+    stored = contact.summary().energy
     slip = 0.8 * MU * LAW.stiffness * 2 * LAW.toe / LAW.tangential_stiffness
     there = taken(contact, q + [slip, 0, 0])
     assert there.wall == pytest.approx(stored + 3 * LAW.tangential_stiffness * slip**2 / 2)
@@ -175,12 +175,12 @@ def test_the_books_close_where_the_forces_balance(seed):
         old = snapshot(wire, contact.motion, 0.3, 0.0)
         contact.start_step()
         contact.evaluate()
-        start = wall_start(contact)
+        start = contact.summary().energy
         contact.motion.set(q, (q - start_q) / STEP)
         contact.evaluate()
         acceleration, push = balanced(contact, np.random.default_rng(seed).normal(0, 1e-2, (6, 2)))
         new = snapshot(wire, contact.motion, push, travel)
-        before = Energies(elastic=old.elastic, wall=start.energy, kinetic=old.kinetic)
+        before = Energies(elastic=old.elastic, wall=start, kinetic=old.kinetic)
         before = replace(before, start=before.elastic + before.wall + before.kinetic)
         after = advanced(before, contact, start, old, new, acceleration, STEP)
         contact.accept()

@@ -20,13 +20,18 @@ MAY_IMPORT = {
     "engine": {"errors", "quantities", "scenario", "model"},
     "result": {"errors", "quantities", "scenario"},
     "metrics": ABOVE_RESULT,
-    "plots": ABOVE_RESULT | {"metrics", "storage"},
+    "comparison": ABOVE_RESULT,
+    "plots": ABOVE_RESULT | {"metrics", "storage", "comparison"},
+    "report": ABOVE_RESULT | {"metrics", "comparison", "plots", "storage"},
     "storage": ABOVE_RESULT | {"metrics", "plots"},
     "sampling": ABOVE_RESULT | {"model", "engine"},
     "trust": ABOVE_RESULT | {"model", "engine"},
-    "simulation": ABOVE_RESULT | {"model", "engine", "sampling", "trust"},
+    "events": ABOVE_RESULT | {"model", "engine"},
+    "simulation": ABOVE_RESULT | {"model", "engine", "sampling", "trust", "events"},
+    "rl": ABOVE_RESULT | {"model", "simulation"},
     "fmi": ABOVE_RESULT | {"native", "model", "engine", "simulation"},
-    "verification": ABOVE_RESULT | {"metrics", "plots", "storage", "model", "engine", "simulation"},
+    "verification": ABOVE_RESULT
+    | {"metrics", "comparison", "plots", "storage", "model", "engine", "trust", "simulation"},
     "sweep": ABOVE_RESULT | {"metrics", "plots", "storage", "model", "engine", "simulation", "fmi"},
 }
 """What each place may import of ours, besides itself. The command line and the package's own face may import all."""

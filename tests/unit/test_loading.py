@@ -49,11 +49,12 @@ def test_five_mistakes_give_five_good_lines(tmp_path: Path) -> None:
         "drive: {kind: speed, speed: 2 mm/s, distance: 30 mm}\n"
     )
     allowed = (
-        "model, diameter, length, bending_stiffness, density, damping_time, segments, grading, tip_shape, imperfection"
+        "model, diameter, length, estimate, floppy_tip, bending_stiffness, stiffness_factor, density, damping_time, "
+        "segments, grading, tip_shape, imperfection, friction"
     )
     assert told(path) == [
         f"{path}:2: wire.model: 'universal-i' is not in the catalogue; did you mean 'universal-ii'? "
-        "known: amplatz-super-stiff, universal-ii",
+        "all of them: gw-exudyn list wires",
         f"{path}:3: wire.diamter: unknown key; did you mean 'diameter'? allowed: {allowed}",
         f"{path}:4: wire.segments: 3.7 is no whole number; a whole number from 1 to 5000 is needed",
         f"{path}:5: vessel.diameter: 4 m is outside the plausible 0.1 mm to 100 mm; "
@@ -175,9 +176,9 @@ class TestOverrides:
         ("override", "sentence"),
         [
             ("wire.segments=abc", "'abc' is text; a whole number from 1 to 5000 is needed, without quotes"),
-            ("wire.segmnts=1", "unknown key; did you mean 'segments'? allowed: model, diameter, length, "
-                               "bending_stiffness, density, "
-             "damping_time, segments, grading, tip_shape, imperfection"),
+            ("wire.segmnts=1", "unknown key; did you mean 'segments'? allowed: model, diameter, length, estimate, "
+                               "floppy_tip, bending_stiffness, stiffness_factor, density, "
+             "damping_time, segments, grading, tip_shape, imperfection, friction"),
             ("wire.segments.x=1", "wire.segments is 50, a single value; there is no 'x' in it"),
             ("vessel.points.4=1", "there is no item '4'; vessel.points has 4 items, 0 to 3"),
             ("vessel.points.-1=1", "there is no item '-1'; vessel.points has 4 items, 0 to 3"),

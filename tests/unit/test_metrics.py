@@ -123,3 +123,47 @@ def test_each_metric_has_a_unit_and_a_meaning():
         assert len(metric.meaning.split()) > 2, name
     units = {name: metric.unit for name, metric in metrics(made_up_result()).items()}
     assert (units["push_force_max"], units["push_force_max_time"], units["tip_path_length"]) == ("N", "s", "m")
+
+
+class TestGuidance:
+    def test_a_tip_that_follows_has_a_trackability_of_one(self):
+        found = values(small(tip_x=[0.0, 2e-3, 4e-3], tip_angle=[0.0] * 3, insertion_depth=[0.0, 2e-3, 4e-3]))
+        assert (found["trackability"], found["tip_retreat_max"], found["prolapse"]) == (pytest.approx(1), 0, 0)
+        assert np.isnan(found["pushability"])
+
+    def test_pulling_back_counts_for_nothing(self):
+        depth, x = [0.0, 4e-3, 1e-3], [0.0, 2e-3, -5e-3]
+        found = values(small(tip_x=x, tip_angle=[0.0] * 3, insertion_depth=depth))
+        assert (found["trackability"], found["tip_retreat_max"]) == (pytest.approx(0.5), 0)
+
+    @pytest.mark.parametrize(("back", "prolapsed"), [(0.2e-3, 0.0), (0.5e-3, 1.0)])
+    def test_a_tip_that_goes_back_while_pushed_prolapses(self, back, prolapsed):
+        """The wire of the stand-in has a diameter of 0.36 mm; the tip points along y."""
+        y = [0.0, 3e-3, 3e-3 - back, 4e-3]
+        found = values(small(tip_y=y, tip_angle=[np.pi / 2] * 4, insertion_depth=[0.0, 2e-3, 4e-3, 6e-3]))
+        assert found["tip_retreat_max"] == pytest.approx(back)
+        assert found["prolapse"] == prolapsed
+
+    def test_pushability_is_the_slope_at_a_blocked_tip(self):
+        """The tip stands from the third output on; before, tip and push force have nothing to do with each other."""
+        found = values(
+            small(
+                tip_x=[0.0, 2e-3, 4e-3, 4e-3, 4e-3, 4e-3],
+                tip_angle=[0.0] * 6,
+                insertion_depth=[0.0, 2e-3, 4e-3, 6e-3, 8e-3, 10e-3],
+                push_force=[0.5, 0.1, 0.2, 0.3, 0.5, 0.9],
+                tip_force=[0.0, 0.3, 0.1, 0.13, 0.19, 0.31],
+            )
+        )
+        assert found["pushability"] == pytest.approx(0.3)
+
+
+def test_where_the_vessel_was_pressed_hardest():
+    result = made_up_result()
+    force = np.hypot(result.values("contact_normal_force"), result.values("contact_tangential_force"))
+    force = np.where(result.values("contact_owner") == 0, force, np.nan)
+    at = np.unravel_index(np.nanargmax(force), force.shape)
+    found = values(result)
+    assert found["wall_force_max_x"] == result.values("contact_x")[at]
+    assert found["wall_force_max_arc_length"] == result.values("contact_arc_length")[at]
+    assert np.isnan(values(small(tip_x=[0.0, 1e-3]))["wall_force_max_x"])

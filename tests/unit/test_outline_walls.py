@@ -175,7 +175,7 @@ def test_a_septum_ends_in_two_corners():
     assert corners_in_mm(walls_of(outline)) == [*LIPS, (10.0, -0.1), (10.0, 0.1)]
 
 
-@pytest.mark.parametrize("degrees", [1, 5, 30, 60, 90, 120, 150, 179])
+@pytest.mark.parametrize("degrees", [6, 30, 60, 90, 120, 150, 179])
 def test_a_wall_reaches_on_past_a_pocket_but_not_far_behind_its_neighbour(degrees):
     """A pocket that turns by so much. Behind the neighbour: half a radius at most; along itself: 0.3 mm at most."""
     turn = math.radians(degrees)
@@ -293,8 +293,10 @@ def test_a_flush_bore_at_an_angle_stays_flush():
 
 
 def test_the_lumens_width_is_taken_just_past_the_exit():
-    assert surroundings(channel()).width == pytest.approx(4e-3)
-    assert surroundings(polygon((-5, -1), (30, -3), (30, 2), (-5, 2))).width == pytest.approx(2e-3 + 9e-3 / 7, rel=1e-4)
+    assert surroundings(channel(), BORE * MM).width == pytest.approx(4e-3)
+    assert surroundings(polygon((-5, -1), (30, -3), (30, 2), (-5, 2)), BORE * MM).width == pytest.approx(
+        2e-3 + 9e-3 / 7, rel=1e-4
+    )
 
 
 def test_the_catheter_is_drawn_behind_its_exit():

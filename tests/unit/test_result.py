@@ -126,8 +126,10 @@ def test_each_status_says_what_happened_and_what_to_change(status):
     assert status.trusted or not status.ok
 
 
-def test_only_a_finished_or_a_stopped_run_is_trusted():
-    assert {status for status in Status if status.trusted} == {Status.COMPLETED, Status.STOPPED}
+def test_only_a_finished_a_stopped_or_a_run_that_an_event_ended_is_trusted():
+    events = {Status.TIP_STALLED, Status.FORCE_LIMIT, Status.TARGET_REACHED, Status.END_OF_TRAVEL}
+    assert {status for status in Status if status.is_event} == events
+    assert {status for status in Status if status.trusted} == {Status.COMPLETED, Status.STOPPED} | events
     assert {status for status in Status if status.ok} == {Status.COMPLETED}
 
 

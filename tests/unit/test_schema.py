@@ -94,7 +94,7 @@ def test_defaults() -> None:
 
 def test_an_empty_section_is_its_default() -> None:
     """As when all its lines are commented out."""
-    assert made({"contact": None, "solver": None, "output": None}) == made({})
+    assert made({"contact": None, "stop": None, "solver": None, "output": None}) == made({})
 
 
 def test_a_scenario_is_frozen_hashable_and_survives_pickling() -> None:
@@ -158,9 +158,8 @@ def test_numpy_numbers_are_numbers() -> None:
         ({"wire.segments": 0}, ["wire.segments: 0 is out of range; a whole number from 1 to 5000 is needed"]),
         ({"wire.segments": True}, ["wire.segments: true is no whole number; a whole number from 1 to 5000 is needed"]),
         ({"wire.grading": 0}, ["wire.grading: 0 is out of range; allowed: 0.05 to 50"]),
-        ({"wire.density": REMOVE}, ["wire.density: is missing: mean density; write density: 6450 kg/m^3, or take a "
-                                    "wire of the catalogue by model: "
-                                    "amplatz-super-stiff, universal-ii"]),
+        ({"wire.density": REMOVE}, ["wire.density: is missing: mean density; write density: 6450 kg/m^3, or name a "
+                                    "wire of the catalogue by model; all of them: gw-exudyn list wires"]),
         ({"wire.imperfection": "1 deg"}, ["wire.imperfection: '1 deg' is an angle, not a curvature; units that fit: "
                                           "1/m, 1/mm, 1/cm; or write auto"]),
         ({"wire.tip_shape": {"kind": "arc", "length": "10 mm"}}, [
@@ -175,13 +174,15 @@ def test_numpy_numbers_are_numbers() -> None:
                                                   "2"]),
         ({"contact.regularisation_speed": 1}, ["contact.regularisation_speed: unknown key; allowed: "
                                                "friction_coefficient, wall_stiffness, "
-                                               "wall_damping, tangential_stiffness"]),
-        ({"vessel.kind": "branches"}, ["vessel.kind: 'branches' is not built yet; allowed: straight, arc, polygon"]),
+                                               "wall_damping, tangential_stiffness, patches"]),
+        ({"vessel": {"kind": "branches"}}, ["vessel.branches: is missing: the branches; for example branches: [{name: "
+                                            "main, points: [[0 mm, 0 mm], [40 mm, 0 mm]], diameter: 4 mm}]"]),
         ({"vessel.kind": "strait"}, ["vessel.kind: 'strait' is not known here; did you mean 'straight'? allowed: "
-                                     "straight, arc, polygon"]),
-        ({"vessel.kind": REMOVE}, ["vessel.kind: is missing: what the vessel is; allowed: straight, arc, polygon"]),
+                                     "straight, arc, branches, centreline, polygon, file, none"]),
+        ({"vessel.kind": REMOVE}, ["vessel.kind: is missing: what the vessel is; allowed: straight, arc, "
+                                   "branches, centreline, polygon, file, none"]),
         ({"vessel": 3}, ["vessel: 3 stands where a vessel is needed: lines of 'key: value', the first kind: straight "
-                         "| arc | polygon"]),
+                         "| arc | branches | centreline | polygon | file | none"]),
         ({"vessel.end": "closed"}, ["vessel.end: 'closed' is not known here; allowed: open, dead"]),
         ({"vessel.length": REMOVE}, ["vessel.length: is missing: length along x; for example length: 100 mm"]),
         ({"vessel": {"kind": "arc", "radius": "2 mm", "angle": "90 deg", "diameter": "4 mm"}},
@@ -199,8 +200,9 @@ def test_numpy_numbers_are_numbers() -> None:
                                          "um, in, Fr"]),
         ({"catheter.bore": REMOVE, "catheter.boar": "1 mm"}, [
          "catheter.boar: unknown key; did you mean 'bore'? allowed: exit, direction, bore, friction_coefficient"]),
-        ({"drive.kind": "force"}, ["drive.kind: 'force' is not built yet; allowed: speed"]),
-        ({"drive.kind": "tip_speed"}, ["drive.kind: 'tip_speed' is not built yet; allowed: speed"]),
+        ({"drive.kind": "forze"}, ["drive.kind: 'forze' is not known here; did you mean 'force'? allowed: speed, "
+                                   "force, tip_speed"]),
+        ({"drive.kind": REMOVE}, ["drive.kind: is missing: what the drive is; allowed: speed, force, tip_speed"]),
         ({"drive.duration": 3}, ["drive.distance: distance and duration are both given; give one of the two"]),
         ({"drive.distance": REMOVE}, ["drive.distance: is missing: how far or how long; give distance: 60 mm, or "
                                       "duration: 30 s"]),
@@ -225,7 +227,7 @@ def test_numpy_numbers_are_numbers() -> None:
                             "digit first, 100 in all"]),
         ({"wire": REMOVE}, ["wire: is missing: the wire; for example wire: {model: universal-ii}"]),
         ({"wire.model": "universal"}, ["wire.model: 'universal' is not in the catalogue; did you mean "
-                                       "'universal-ii'? known: amplatz-super-stiff, universal-ii"]),
+                                       "'universal-ii'? all of them: gw-exudyn list wires"]),
     ],
 )  # fmt: skip
 def test_everything_wrong_has_its_sentence(changes: dict[str, Any], sentences: list[str]) -> None:
@@ -290,12 +292,12 @@ class TestBendingStiffness:
             ({"table": [[0.01, 1e-6], [0.15, 1e-6]]}, ".table.0: begins at 10 mm; the first row is at the tip, 0"),
             ({"table": [[0, 1e-6], [0.1, 1e-6], [0.05, 1e-6], [0.15, 1e-6]]},
              ".table.2: 50 mm comes after 100 mm; rows go from the tip on"),
-            ([{"from": 0, "to": 0.15}], ".0.value: is missing: bending stiffness EI: one value, or [at from, at to]; "
-                                        "for example value: 1.0 N*mm^2"),
+            ([{"from": 0, "to": 0.15}], ".0: has no bending stiffness; give value (as value: 1.0 N*mm^2), or core and "
+                                        "modulus"),
             ([{"from": 0, "to": 0.15, "value": "7 N"}], ".0.value: '7 N' is a force, not a bending stiffness; units "
                                                         "that fit: N*m^2, N*cm^2, N*mm^2"),
             ([3], ".0: 3 stands where a piece of the bending stiffness is needed: lines of 'key: value' with from, "
-                  "to, value"),
+                  "to, value, core, modulus"),
         ],
     )  # fmt: skip
     def test_what_is_no_stiffness(self, raw: Any, sentence: str) -> None:

@@ -57,11 +57,15 @@ class System(ctypes.Structure):
                 "wall_fade_lo",
                 "wall_fade_hi",
                 "wall_friction",
+                "wire_friction",
             )
         ),
         *((name, _INTS) for name in ("wall_sharp", "wall_tube")),
         *((name, _DOUBLES) for name in ("corner_x", "corner_y", "corner_friction")),
         ("corner_tube", _INTS),
+        *((name, _DOUBLES) for name in ("wall_boxes", "corner_boxes", "body_boxes")),
+        ("reach", ctypes.c_double),
+        ("seen", _DOUBLES),
     ]
 
 
@@ -86,6 +90,8 @@ class _Pairs(ctypes.Structure):
                 "tangential_stiffness",
             )
         ),
+        ("near_count", ctypes.c_int),
+        ("near", _INTS),
     ]
 
 
@@ -119,11 +125,12 @@ class Pairs:
     tangential_stiffness: Floats
 
     def __init__(self, capacity: int) -> None:
-        names = [str(field[0]) for field in _Pairs._fields_[2:]]
+        self._near = np.zeros(capacity, np.int32)
+        names = [str(field[0]) for field in _Pairs._fields_[2:-2]]
         self._arrays: dict[str, NDArray[Any]] = {
             name: np.zeros(capacity, np.int32 if name in ("body", "target") else np.float64) for name in names
         }
-        self.struct = _Pairs(capacity, 0, *(_pointer(array) for array in self._arrays.values()))
+        self.struct = _Pairs(capacity, 0, *map(_pointer, self._arrays.values()), -1, _pointer(self._near))
         self.address = ctypes.addressof(self.struct)
         self.show()
 
@@ -141,6 +148,20 @@ class Pairs:
         """Make the attributes views of the valid pairs, after their number has changed."""
         for name, array in self._arrays.items():
             setattr(self, name, array[: self.struct.count])
+
+
+class Summary(ctypes.Structure):
+    """`Summary` of contact.c: what the last `evaluate` found, all pairs together.
+
+    deepest : m, of `body` in the wall, or the corner, `target`; 0 and -1 where nothing is inside. largest : N, of one
+    contact with the vessel, normal and tangential together. energy : J, in the springs. friction, damping : J, lost
+    since the start of the step.
+    """
+
+    _fields_ = [
+        *((name, ctypes.c_double) for name in ("deepest", "largest", "energy", "friction", "damping")),
+        *((name, ctypes.c_int) for name in ("body", "target", "corner")),
+    ]
 
 
 class Motion:
@@ -162,6 +183,10 @@ class Motion:
         self.v[:] = v
         np.cos(self.q[:, 2], out=self.c)
         np.sin(self.q[:, 2], out=self.s)
+
+    def take(self, other: Motion) -> None:
+        """Take over the place of another motion of as many bodies."""
+        self.q[:], self.c[:], self.s[:] = other.q, other.c, other.s
 
     def start_step(self) -> None:
         """Make the present place that of the step's start."""
@@ -188,10 +213,15 @@ class Kernel:
             "walls": len(arrays["wall_x"]),
             "corners": len(arrays["corner_x"]),
         }
+        self._library = _load()
+        for name, count in counts.items():
+            boxes = {"bodies": "body_boxes", "walls": "wall_boxes", "corners": "corner_boxes"}[name]
+            self._arrays[boxes] = np.zeros(4 * int(self._library.gw_contact_boxes(count)))
+        self._arrays["seen"] = np.zeros(3 * counts["bodies"])
         pointers = {name: _pointer(array) for name, array in self._arrays.items()}
         self._system = System(**counts, **numbers, **pointers)
         self._address = ctypes.addressof(self._system)
-        self._library = _load()
+        self._library.gw_contact_index(self._address)
         self.bodies = counts["bodies"]
         self.force = np.zeros(3 * self.bodies)
         self.tangent = np.zeros(9 * self.bodies)
@@ -217,13 +247,13 @@ class Kernel:
 
         sides, nearest : (k,), of the corners: the side decided for each, and its nearest body.
         """
+        self._system.reach = reach
         complete = self._library.gw_contact_candidates(
             self._address,
             motion.address,
             sides.ctypes.data,
             nearest.ctypes.data,
             first,
-            reach,
             nodes.address,
             corners.address,
         )
@@ -238,6 +268,27 @@ class Kernel:
             self._address, motion.address, first, body.ctypes.data, ahead.ctypes.data, offset.ctypes.data
         )
         return body, ahead, offset
+
+    def add_turning(self, motion: Motion, tangent: Floats, reaction: Floats, *, stiffening: bool) -> None:
+        """Add to a tangent (9 n,) how the joints' forces, minus `reaction` (2 n,), N, turn the segments as they
+        turn."""
+        self._library.gw_contact_turning(
+            self._address, motion.address, reaction.ctypes.data, stiffening, tangent.ctypes.data
+        )
+
+    def share_to_touch(self, before: Motion, nodes: Pairs, corners: Pairs) -> float:
+        """Share of the way from the place of `before` to the last evaluated one where the first contact closes."""
+        return float(
+            self._library.gw_contact_share_to_touch(self._address, before.address, nodes.address, corners.address)
+        )
+
+    def summary(self, motion: Motion, nodes: Pairs, corners: Pairs) -> Summary:
+        """All pairs together, at the place of the last `evaluate`."""
+        found = Summary()
+        self._library.gw_contact_summary(
+            self._address, motion.address, nodes.address, corners.address, ctypes.byref(found)
+        )
+        return found
 
     def unstable(self, motion: Motion, nodes: Pairs, corners: Pairs, joint_stiffness: Floats) -> int:
         """Number of directions in which the step's incremental potential has a maximum at the present place."""
@@ -270,8 +321,13 @@ def _load() -> ctypes.CDLL:
     pointer, real, integer = ctypes.c_void_p, ctypes.c_double, ctypes.c_int
     signatures: dict[str, tuple[list[Any], Any]] = {
         "gw_contact_evaluate": ([pointer] * 4 + [real] * 2 + [pointer] * 2, None),
-        "gw_contact_candidates": ([pointer] * 4 + [integer, real] + [pointer] * 2, integer),
+        "gw_contact_boxes": ([integer], integer),
+        "gw_contact_index": ([pointer], None),
+        "gw_contact_candidates": ([pointer] * 4 + [integer] + [pointer] * 2, integer),
         "gw_contact_nearest": ([pointer] * 2 + [integer] + [pointer] * 3, None),
+        "gw_contact_turning": ([pointer] * 3 + [integer, pointer], None),
+        "gw_contact_share_to_touch": ([pointer] * 4, real),
+        "gw_contact_summary": ([pointer] * 5, None),
         "gw_contact_unstable": ([pointer] * 5, integer),
         "gw_contact_crossing": ([pointer] * 2 + [integer, pointer], integer),
     }

@@ -1,0 +1,149 @@
+"""The page: template, style and script put together with the data of the runs."""
+
+from __future__ import annotations
+
+import base64
+import html
+import json
+from collections.abc import Mapping, Sequence
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from gw_exudyn.comparison import differences
+from gw_exudyn.errors import StorageError, UsageError
+from gw_exudyn.metrics import metrics
+from gw_exudyn.plots.save import render_figures
+from gw_exudyn.quantities import QUANTITIES, display
+from gw_exudyn.report.pack import packed_run, scalars_table
+
+if TYPE_CHECKING:
+    from gw_exudyn.result import Result
+
+MOST_RUNS = 4
+_FIGURES = ("insertion", "forces", "tip_path", "energy", "contact_map")
+_LIKE = {"m": "tip_x", "N": "push_force", "J": "insertion_work", "rad": "tip_angle", "s": "time", "1": "contacts"}
+
+
+def report_page(results: Sequence[Result], *, title: str = "", figures: bool = True) -> str:
+    """The page as HTML text. Raises UsageError for no run, or for more than the player can set beside each other."""
+    if not 1 <= len(results) <= MOST_RUNS:
+        raise UsageError(f"a report shows 1 to {MOST_RUNS} runs, not {len(results)}; make several reports")
+    names = _names(results)
+    data = {"runs": [packed_run(result) | {"name": name} for result, name in zip(results, names, strict=True)]}
+    parts = {
+        "TITLE": html.escape(title or " and ".join(names)),
+        "STYLE": _asset("style.css"),
+        "SCRIPT": "\n".join(_asset(name) for name in ("data.js", "scene.js", "chart.js", "player.js")),
+        "DATA": _script_safe(json.dumps(data | {"scalars": scalars_table()}, allow_nan=False)),
+        "STATUS": "".join(_status(result, name) for result, name in zip(results, names, strict=True)),
+        "METRICS": _metrics(results, names),
+        "SCENARIOS": _scenarios(results, names),
+        "FIGURES": "".join(_figures(r, n) for r, n in zip(results, names, strict=True)) if figures else "",
+        "PROVENANCE": _provenance(results, names),
+    }
+    page = _asset("page.html")
+    for name, text in parts.items():
+        page = page.replace(f"<!--{name}-->", text)
+    return page
+
+
+def save_report(results: Sequence[Result], path: str | Path, *, title: str = "", figures: bool = True) -> Path:
+    """Write the page and return its path; it appears whole or not at all.
+
+    Raises StorageError where the disk refuses.
+    """
+    from gw_exudyn.storage.run_folder import write_file
+
+    target = Path(path)
+    content = report_page(results, title=title, figures=figures).encode()
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        write_file(target, content)
+    except OSError as error:
+        raise StorageError(f"{target}: can't be written: {error.strerror or error}; name another place") from error
+    return target
+
+
+def _names(results: Sequence[Result]) -> list[str]:
+    """Names of the runs, numbered where two have the same."""
+    plain = [result.scenario.name for result in results]
+    return [f"{name} ({i + 1})" if plain.count(name) > 1 else name for i, name in enumerate(plain)]
+
+
+def _asset(name: str) -> str:
+    return files("gw_exudyn.report").joinpath("assets", name).read_text(encoding="utf-8")
+
+
+def _script_safe(text: str) -> str:
+    """JSON that may stand inside a script element."""
+    return text.replace("</", "<\\/")
+
+
+def _status(result: Result, name: str) -> str:
+    kind = "good" if result.status.status.trusted else "bad"
+    return f'<p class="status {kind}"><b>{html.escape(name)}</b> {html.escape(result.status.sentence())}</p>'
+
+
+def _metrics(results: Sequence[Result], names: Sequence[str]) -> str:
+    found = [metrics(result) for result in results]
+    rows = [
+        [key, *(_number(key, one[key].value, one[key].unit) for one in found), found[0][key].meaning]
+        for key in found[0]
+    ]
+    return _table(["metric", *names, "meaning"], rows)
+
+
+def _scenarios(results: Sequence[Result], names: Sequence[str]) -> str:
+    """All inputs of the first run, and what the others have otherwise."""
+    plain = [result.scenario.to_dict() for result in results]
+    others: dict[str, list[Any]] = {}
+    for number, other in enumerate(plain[1:]):
+        for change in differences(plain[0], other):
+            row = others.setdefault(change.path, [change.first] * len(plain))
+            row[number + 1] = change.second
+    changed = _table(["differs", *names], [[path, *map(_plain, row)] for path, row in others.items()]) if others else ""
+    inputs = "".join(
+        f"<details><summary>inputs of {html.escape(name)}</summary>"
+        f"<pre>{html.escape(json.dumps(one, indent=1, ensure_ascii=False))}</pre></details>"
+        for name, one in zip(names, plain, strict=True)
+    )
+    return changed + inputs
+
+
+def _figures(result: Result, name: str) -> str:
+    pictures = render_figures(result, _FIGURES, ("png",))
+    shown = "".join(
+        f'<figure><img alt="{html.escape(name)}: {file}" loading="lazy" '
+        f'src="data:image/png;base64,{base64.b64encode(content).decode("ascii")}"></figure>'
+        for file, content in pictures.items()
+    )
+    return f"<details><summary>figures of {html.escape(name)}</summary>{shown}</details>"
+
+
+def _provenance(results: Sequence[Result], names: Sequence[str]) -> str:
+    rows = []
+    for result, name in zip(results, names, strict=True):
+        versions: Mapping[str, str] = result.provenance.get("versions", {})
+        command = str(result.provenance.get("command", ""))
+        rows.append([name, command or "-", ", ".join(f"{key} {value}" for key, value in versions.items())])
+    return _table(["run", "command", "versions"], rows)
+
+
+def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    def cells(row: Sequence[str], tag: str) -> str:
+        return "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in row)
+
+    body = "".join(f"<tr>{cells(row, 'td')}</tr>" for row in rows)
+    return f'<div class="wide"><table><thead><tr>{cells(head, "th")}</tr></thead><tbody>{body}</tbody></table></div>'
+
+
+def _number(name: str, value: float, unit: str) -> str:
+    if value != value:
+        return "-"
+    like = name if name in QUANTITIES else _LIKE.get(unit)
+    return display(like, value) if like else f"{value:.4g} {unit}"
+
+
+def _plain(value: Any) -> str:
+    return "-" if value is None else f"{value:.6g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,65 @@
+"""`gw-exudyn compare`: norms, what differs, and the exit code of a tolerance."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+
+@pytest.fixture
+def runs(gw, solver) -> list[str]:
+    return gw("run", "straight", "arc90", "-q", "--no-figures").out.split()
+
+
+def test_a_run_is_no_way_from_itself(gw, runs):
+    outcome = gw("compare", runs[0], runs[0], "--tolerance", "tip_max=0", "--no-figure")
+    assert outcome.code == 0
+    assert "the scenarios are the same" in outcome.out
+
+
+def test_what_differs_and_the_figure(gw, runs):
+    outcome = gw("compare", *runs, "--json")
+    content = json.loads(outcome.out)
+    assert outcome.code == 0
+    assert content["scenarios"]["vessel.kind"] == ["straight", "arc"]
+    assert content["norms"]["push_force_rms"]["unit"] == "N"
+    files = [Path(file) for file in content["figures"]]
+    assert files == [Path("results", "runs", f"compare-straight-arc90.{suffix}") for suffix in ("png", "pdf")]
+    assert all(file.stat().st_size > 1000 for file in files)
+
+
+@pytest.fixture
+def coarse(gw) -> list[str]:
+    """Two runs of the true solver that differ in friction."""
+    small = ("--set", "wire.segments=10", "--set", "drive.distance=40 mm", "-q", "--no-figures")
+    return [
+        gw(
+            "run", "corner90-universal", *small, "--set", f"contact.friction_coefficient={friction}", "--out", friction
+        ).out.strip()
+        for friction in ("0.1", "0.5")
+    ]
+
+
+def test_beyond_a_tolerance_ends_with_6(gw, coarse):
+    outcome = gw("compare", *coarse, "--tolerance", "push_force_max=1 uN", "--no-figure")
+    assert outcome.code == 6
+    assert "push_force_max" in outcome.err
+    assert "is beyond 0.001 mN" in outcome.err
+    assert gw("compare", *coarse, "--tolerance", "push_force_max=10 N", "--no-figure").code == 0
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ("tip_mx=0.1 mm", "did you mean 'tip_max'"),
+        ("tip_max=0.1 N", "is a force, not a length"),
+        ("tip_max=-1", "zero or more"),
+        ("tip_max", "does not begin with a number"),
+    ],
+)
+def test_a_tolerance_that_is_none_is_wrong_use(gw, runs, given, sentence):
+    outcome = gw("compare", runs[0], runs[0], "--tolerance", given, "--no-figure")
+    assert outcome.code == 2
+    assert sentence in outcome.err
