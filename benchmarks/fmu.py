@@ -130,9 +130,7 @@ def round_trip(folder: Path, calls: int = 3000) -> tuple[float, float]:
     file = folder / "resources" / "wrapper.txt"
     text = file.read_text(encoding="utf-8")
     empty = Path(__file__).with_name("empty_worker.py").resolve()
-    file.write_text(
-        text.replace("argument -m\nargument gw_exudyn.fmi.worker", f"argument {empty}"), encoding="utf-8"
-    )
+    file.write_text(text.replace("argument -m\nargument gw_exudyn.fmi.worker", f"argument {empty}"), encoding="utf-8")
     host = Host(folder)
     times = [seconds(lambda: host.steps(1)) for _ in range(calls)]
     host.free()
