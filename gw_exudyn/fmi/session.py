@@ -117,6 +117,8 @@ class FmuSession:
         from fmpy import simulate_fmu
 
         starts = {name: self._value(name, value) for name, value in (values or {}).items()}
+        for name in [] if inputs is None else (inputs.dtype.names or ())[1:]:
+            self._known(name, ("input",))
         default = self.description.defaultExperiment
         with self._told():
             if self._used:
@@ -144,14 +146,19 @@ class FmuSession:
         text = self._instance.getString([message])[0]
         return int(getter([code])[0]), text.decode() if isinstance(text, bytes) else text
 
+    def _known(self, name: str, causalities: tuple[str, ...]) -> Any:
+        """The variable of that name. Raises UsageError with the nearest where there is none of such causality."""
+        variable = self.variables.get(name)
+        allowed = [n for n, v in self.variables.items() if v.causality in causalities]
+        if variable is None or name not in allowed:
+            near = difflib.get_close_matches(name, allowed, n=2)
+            hint = f"; nearest: {', '.join(near)}" if near else f"; there are: {', '.join(allowed)}"
+            raise UsageError(f"{name}: no {' or '.join(causalities)} of the FMU has this name{hint}")
+        return variable
+
     def _value(self, name: str, value: Any) -> Any:
         """The value as fmpy takes it: text is read as the variable's type wants it."""
-        variable = self.variables.get(name)
-        settable = [n for n, v in self.variables.items() if v.causality in ("parameter", "input")]
-        if variable is None or name not in settable:
-            near = difflib.get_close_matches(name, settable, n=2)
-            hint = f"; nearest: {', '.join(near)}" if near else f"; there are: {', '.join(settable)}"
-            raise UsageError(f"{name}: no parameter or input of the FMU has this name{hint}")
+        variable = self._known(name, ("parameter", "input"))
         if variable.type in _TAKES_TEXT or not isinstance(value, str):
             return value
         readers: dict[str, Callable[[str], Any]] = {"Boolean": _boolean, "Integer": int, "Int32": int}
