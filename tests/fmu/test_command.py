@@ -89,12 +89,12 @@ def test_one_instance_serves_many_points_and_an_error_does_not_end_it(fmu, scena
 )
 def test_inputs_that_make_no_sense(tmp_path, text, sentence):
     (tmp_path / "in.csv").write_text(text)
-    with pytest.raises(StorageError, match="in.csv") as error:
+    with pytest.raises(StorageError, match=r"in\.csv") as error:
         read_inputs(tmp_path / "in.csv")
     assert sentence in str(error.value)
 
 
 def test_an_input_that_the_fmu_does_not_have(fmus):
     inputs = np.zeros(2, [("time", float), ("command.spede", float)])
-    with FmuSession(fmus[2]) as session, pytest.raises(UsageError, match="command.speed"):
+    with FmuSession(fmus[2]) as session, pytest.raises(UsageError, match=r"command\.speed"):
         session.run(inputs=inputs, stop=0.1)
