@@ -13,7 +13,7 @@ from gw_exudyn import __version__
 from gw_exudyn.cli.outcome import exit_code_of
 
 COMMANDS: Mapping[str, str] = MappingProxyType(
-    {name: f"gw_exudyn.cli.{name}" for name in ("run", "check", "plot", "info", "schema")}
+    {name: f"gw_exudyn.cli.{name}" for name in ("run", "sweep", "check", "plot", "info", "schema")}
 )
 """Name of each command and the module that holds it as `command`, in the order of the help."""
 
@@ -47,7 +47,7 @@ class CommandGroup(click.Group):
     cls=CommandGroup,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     epilog="Exit codes: 0 done, 2 wrong use, 3 bad scenario, 4 solver failed or run not to be trusted, "
-    "7 trouble with files or the system, 130 interrupted.",
+    "5 sweep with failed points, 7 trouble with files or the system, 130 interrupted.",
 )
 @click.version_option(__version__, prog_name="gw-exudyn", message="%(prog)s %(version)s")
 def gw_exudyn() -> None:

@@ -109,7 +109,8 @@ class PointProcess:
             return ""
         told = [line for line in lines if line.strip()]
         fatal = [line for line in told if line.startswith("Fatal Python error")]
-        return (fatal or told[-1:] or [""])[0].strip()[:300]
+        last: str = (fatal or told[-1:] or [""])[0]
+        return last.strip()[:300]
 
     def _kill(self) -> None:
         process, self._process = self._process, None

@@ -1,0 +1,121 @@
+"""`sweep.csv`, a row a point, and the same in arrays for what is made of it."""
+
+from __future__ import annotations
+
+import csv
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gw_exudyn.result import Floats
+from gw_exudyn.storage.series import SERIES
+from gw_exudyn.sweep.folder import SweepFolder, as_storage_error, read_point
+from gw_exudyn.sweep.metric_names import metric_table
+from gw_exudyn.sweep.run import GOOD, Failure, Plan, Summary, note_failure
+from gw_exudyn.sweep.study import Study
+
+TABLE = "sweep.csv"
+NOT_RUN = "not_run"
+
+
+@dataclass(frozen=True)
+class Table:
+    """What all points came to.
+
+    status : of each. wall_time : (points,) s. metrics : name to (points,) in SI; NaN where there is none.
+    times : the different series of output times (s) of points that came out well, longest first.
+    """
+
+    status: tuple[str, ...]
+    wall_time: Floats
+    metrics: Mapping[str, Floats]
+    times: tuple[Floats, ...]
+
+    @property
+    def good(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
+        """(points,) whether a point came out well."""
+        return np.array([status in GOOD for status in self.status])
+
+
+def write_table(study: Study, plan: Plan, place: SweepFolder, summary: Summary) -> Table:
+    """Read all points, write sweep.csv, and count in `summary` what came out."""
+    count = len(plan.ids)
+    status, wall_time = [], np.full(count, np.nan)
+    metrics = {name: np.full(count, np.nan) for name in metric_table()}
+    times: dict[str, Floats] = {}
+    part = place.path / f".{TABLE}.part"
+    with as_storage_error(place.path):
+        with open(part, "w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(_heads(study))
+            for point, found in enumerate(plan.ids):
+                content = read_point(place.point(found))
+                status.append(NOT_RUN if content is None else str(content["status"].get("name")))
+                if content is not None:
+                    wall_time[point] = _number(content.get("wall_time"))
+                    for name, entry in content.get("metrics", {}).items():
+                        if name in metrics:
+                            metrics[name][point] = _number(entry["value"])
+                    if plan.first[found] == point:
+                        _count(summary, Failure(found, point, status[-1], str(content["status"].get("sentence"))))
+                    if status[-1] in GOOD:
+                        _note_times(times, place.point(found))
+                numbers = [_text(values[point]) for values in (wall_time, *metrics.values())]
+                reason = "" if content is None or status[-1] in GOOD else str(content["status"].get("sentence"))
+                labels = [_text(label) for label in study.design.labels(point).values()]
+                writer.writerow([point, found, *labels, status[-1], reason, *numbers])
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(part, place.path / TABLE)
+    longest = sorted(times.values(), key=len, reverse=True)
+    return Table(tuple(status), wall_time, metrics, tuple(longest))
+
+
+def _heads(study: Study) -> list[str]:
+    axes = [axis.path if axis.unit is None else f"{axis.path} [{axis.unit}]" for axis in study.design.axes]
+    metrics = [f"{name} [{metric.unit}]" for name, metric in metric_table().items()]
+    return ["point", "id", *axes, "status", "reason", "wall_time [s]", *metrics]
+
+
+def _number(value: Any) -> float:
+    return float("nan") if value is None else float(value)
+
+
+def _text(value: float | str) -> str:
+    """Full digits; empty where there is no number."""
+    if isinstance(value, str):
+        return value
+    return "" if np.isnan(value) else repr(float(value))
+
+
+def _count(summary: Summary, point: Failure) -> None:
+    if point.status in GOOD:
+        summary.completed += 1
+    else:
+        note_failure(summary, point)
+
+
+def _note_times(times: dict[str, Floats], folder: Path) -> None:
+    try:
+        lines = (folder / SERIES).read_text(encoding="utf-8").splitlines()[1:]
+    except FileNotFoundError:
+        return
+    column = [line.partition(",")[0] for line in lines]
+    key = ",".join(column)
+    if key not in times:
+        times[key] = np.array(column, dtype=float)
+
+
+def read_series(folder: Path) -> dict[str, Floats] | None:
+    """The columns of a point's series.csv by name, in SI; None where there is none."""
+    try:
+        head, *lines = (folder / SERIES).read_text(encoding="utf-8").splitlines()
+    except FileNotFoundError:
+        return None
+    names = [name.partition(" ")[0] for name in head.split(",")]
+    rows = np.array([line.split(",") for line in lines], dtype=float).reshape(len(lines), len(names))
+    return {name: rows[:, i] for i, name in enumerate(names)}
