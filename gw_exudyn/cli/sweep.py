@@ -133,7 +133,7 @@ def _show_plan(study: Study, plan: Plan, folder: Path, chosen: Options, as_json:
 
 def _tell(summary: Summary, quiet: bool) -> None:
     for failure in summary.failures[:_FAILURES_TOLD]:
-        tell(f"point {failure.point} ({failure.id}): {failure.status}: {failure.reason}")
+        tell(f"point {failure.point} ({failure.id}): {failure.status}: {failure.reason.partition('. ')[0].rstrip('.')}")
     if summary.failed > _FAILURES_TOLD:
         tell(f"... and {summary.failed - _FAILURES_TOLD} more failed points; sweep.csv has them all")
     for note in summary.notes:

@@ -46,11 +46,7 @@ def names_of(axes: tuple[Axis, ...]) -> dict[str, str]:
 
 def common_times(table: Table) -> Floats | None:
     """(t,) s. Output times of all points, where those of each are the first of the longest; else None."""
-    longest = table.times[0] if table.times else np.zeros(1)
-    for times in table.times[1:]:
-        if not np.array_equal(times, longest[: len(times)]):
-            return None
-    return longest
+    return table.times[0] if len(table.times) == 1 else None
 
 
 def write_dataset(study: Study, plan: Plan, place: SweepFolder, table: Table) -> None:
@@ -92,6 +88,8 @@ def _write(
     import h5netcdf
 
     design, names = study.design, names_of(study.design.axes)
+    # What a reader is to take for coordinates, besides the dimensions' own.
+    further = {"coordinates": " ".join(["id", *(() if design.grid else names.values())])}
     dims = tuple(names.values()) if design.grid else ("point",)
     along = "output" if times is None else "time"
     with h5netcdf.File(part, "w") as file:
@@ -101,15 +99,15 @@ def _write(
             _write_axis(file, study, axis, names[axis.path])
         _put(file, "id", dims, np.array(plan.ids, dtype=object).reshape(design.shape), {"long_name": "id of the point"})
         status = np.array(table.status, dtype=object).reshape(design.shape)
-        _put(file, "status", dims, status, {"long_name": "how the point ended"})
-        attrs = {"units": "s", "long_name": "time of the solution on the clock"}
+        _put(file, "status", dims, status, {"long_name": "how the point ended", **further})
+        attrs = {"units": "s", "long_name": "time of the solution on the clock", **further}
         _put(file, "wall_time", dims, table.wall_time.reshape(design.shape), attrs)
         for name, metric in metric_table().items():
-            attrs = {"units": metric.unit, "long_name": metric.meaning}
+            attrs = {"units": metric.unit, "long_name": metric.meaning, **further}
             _put(file, f"{METRIC}{name}", dims, table.metrics[name].reshape(design.shape), attrs)
         if times is not None:
             _put(file, "time", ("time",), times, _attributes("time"))
-        _write_curves(file, plan, place, (*dims, along), design.shape, times, length)
+        _write_curves(file, plan, place, (*dims, along), design.shape, times, length, further)
 
 
 def _about(study: Study) -> dict[str, str]:
@@ -118,7 +116,6 @@ def _about(study: Study) -> dict[str, str]:
         "title": f"Sweep of guidewire insertions: {study.name}",
         "base": study.base,
         "mode": study.mode,
-        "coordinates_of_points": " ".join(names_of(study.design.axes).values()),
     }
 
 
@@ -159,6 +156,7 @@ def _write_curves(
     shape: tuple[int, ...],
     times: Floats | None,
     length: int,
+    further: dict[str, str],
 ) -> None:
     """Write all time series, a block of neighbouring points at a time."""
     names = CURVES if times is not None else SERIES_COLUMNS
@@ -177,7 +175,7 @@ def _write_curves(
             compression_opts=4,
             shuffle=True,
         )
-        variables[name].attrs.update(_attributes(name))
+        variables[name].attrs.update({**_attributes(name), **further})
     for start, index, block_shape in _blocks(shape, tail, most):
         count = math.prod(block_shape)
         blocks = {name: np.full((count, length), np.nan) for name in names}

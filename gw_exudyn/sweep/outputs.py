@@ -28,12 +28,12 @@ def write_outputs(
     """
     table = write_table(study, plan, place, summary)
     summary.files.append(place.path / TABLE)
-    if not table.times:
-        summary.notes.append(f"no point came out well; there is no {DATASET} and nothing to draw")
-        return
     write_dataset(study, plan, place, table)
     summary.files.append(place.path / DATASET)
     if run_whole is None:
+        return
+    if not table.good.any():
+        summary.notes.append("no point came out well, so there is nothing to draw")
         return
     if study.method in FOR_INDICES and study.mode == "sample":
         from gw_exudyn.sweep.sensitivity import write_indices

@@ -24,10 +24,11 @@ LARGEST = 100_000_000
 _HEAD = re.compile(r"\s*([^\[\]\s]+)\s*(?:\[([^\[\]]*)\])?\s*")
 
 
-def read_points(path: Path) -> tuple[list[Axis], dict[str, Place]]:
-    """Axes of equal length, and the place of every value by `vary.PATH.ROW`.
+def read_points(path: Path) -> tuple[list[Axis], dict[str, Place], list[Problem]]:
+    """Axes of equal length, the place of every value by `vary.PATH.ROW`, and what is wrong; rows with something wrong
+    are left out of the axes.
 
-    Raises ScenarioError with all that is wrong, by line.
+    Raises ScenarioError where there is nothing to go on with.
     """
     name = str(path)
     rows = [(line, row) for line, row in _rows(read_text(path, LARGEST)) if any(cell.strip() for cell in row)]
@@ -35,22 +36,38 @@ def read_points(path: Path) -> tuple[list[Axis], dict[str, Place]]:
         raise ScenarioError(Problem("", "holds no points; a line of dotted paths and a line for each is needed", name))
     (head_line, head), body = rows[0], rows[1:]
     columns, problems = _columns(head, name, head_line)
-    values: list[list[Any]] = [[] for _ in columns]
-    for line, row in body:
-        if len(row) != len(head):
-            problems.append(Problem("", f"has {len(row)} values, the first line {len(head)}", name, line))
-            continue
-        for column, cell, (dotted, unit) in zip(values, row, columns, strict=False):
-            try:
-                column.append(_value(cell.strip(), unit))
-            except (UnitError, ScenarioError) as error:
-                text = error.problems[0].message if isinstance(error, ScenarioError) else str(error)
-                problems.append(Problem(dotted, text, name, line))
-                column.append(None)
     if problems:
         raise ScenarioError(problems)
-    axes = _axes([dotted for dotted, _ in columns], values, name, head_line)
-    return axes, {f"vary.{axis.path}.{row}": (name, line) for axis in axes for row, (line, _) in enumerate(body)}
+    read: list[tuple[int, list[Any]]] = []
+    for line, row in body:
+        values, faults = _row(row, columns, name, line)
+        problems += faults
+        if not faults:
+            read.append((line, values))
+    if not read:
+        raise ScenarioError(problems)
+    paths = [dotted for dotted, _ in columns]
+    axes = _axes(paths, [[values[i] for _, values in read] for i in range(len(paths))], name, head_line)
+    places = {f"vary.{dotted}.{row}": (name, line) for dotted in paths for row, (line, _) in enumerate(read)}
+    return axes, places, problems
+
+
+def _row(
+    row: Sequence[str], columns: Sequence[tuple[str, str | None]], name: str, line: int
+) -> tuple[list[Any], list[Problem]]:
+    """The values of a row, and what is wrong with it."""
+    if len(row) != len(columns):
+        return [], [Problem("", f"has {len(row)} values, the first line {len(columns)}", name, line)]
+    values: list[Any] = []
+    problems: list[Problem] = []
+    for cell, (dotted, unit) in zip(row, columns, strict=True):
+        try:
+            values.append(_value(cell.strip(), unit))
+        except ScenarioError as error:
+            problems.append(Problem(dotted, error.problems[0].message, name, line))
+        except UnitError as error:
+            problems.append(Problem(dotted, str(error), name, line))
+    return values, problems
 
 
 def _rows(text: str) -> list[tuple[int, list[str]]]:

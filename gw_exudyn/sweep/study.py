@@ -30,6 +30,8 @@ STUDIES = "studies"
 """The folder of shipped studies beside the shipped scenarios."""
 
 _MOST_PROBLEMS = 1000
+_NONE = "-"
+"""Stands for a base that the file does not give, which is told already."""
 
 
 class Paths(Kind):
@@ -140,19 +142,45 @@ def load_study(path_or_name: str | os.PathLike[str], overrides: Sequence[str] = 
     source = read_yaml(file)
     problems = list(source.problems)
     form = _form(source, problems)
-    if form is None:
-        raise ScenarioError(in_order(problems))
     fixed, places = _fixed(form, source, overrides, problems)
     axes = _axes(form, source, problems)
     base, folder = _base(form.base, file, source, problems)
     design = None
     if not problems:
         design = _design(form, axes, file, source, places, problems)
+    if base is not None and problems:
+        # What can be told of the values all the same: of whole points, or of each value by itself.
+        designs = [design] if design is not None else [grid([]), *(grid([axis]) for axis in axes if axis.values)]
+        for one in designs:
+            problems += _value_problems(_study(form, file, fixed, base, folder, places, one))
     if problems or base is None or design is None:
-        raise ScenarioError(in_order(problems))
+        raise ScenarioError(in_order(_once(problems)))
+    return _study(form, file, fixed, base, folder, places, design)
+
+
+def _study(
+    form: StudyForm,
+    file: Path,
+    fixed: Mapping[str, Any],
+    base: YamlSource,
+    folder: Path,
+    places: Mapping[str, Place],
+    design: Design,
+) -> Study:
     name = form.name or name_from(file)
     given = (name, file, form.base, form.mode, form.method, form.samples or 0, form.seed, form.metrics)
     return Study(*given, design, fixed, base, folder, places)
+
+
+def _value_problems(study: Study) -> list[Problem]:
+    """What is wrong with values that the study puts into the scenario, as far as its points show it."""
+    found, mine = ProblemList(), [*study.fixed, *(axis.path for axis in study.design.axes)]
+    for point in range(min(len(study), _MOST_PROBLEMS)):
+        try:
+            study.scenario(point)
+        except ScenarioError as error:
+            found.add(problem for problem in error.problems if any(_overlap(problem.path, path) for path in mine))
+    return found.all()
 
 
 def _study_file(text: str) -> Path:
@@ -168,12 +196,15 @@ def _study_file(text: str) -> Path:
     return path
 
 
-def _form(source: YamlSource, problems: list[Problem]) -> StudyForm | None:
+def _form(source: YamlSource, problems: list[Problem]) -> StudyForm:
+    """The file's form; what is wrong with a key is noted, and the key left out."""
     try:
         return StudyForm.model_validate(source.data)
     except ValidationError as error:
         problems += problems_of(error, source.places)
-        return None
+        wrong_keys = {str(details["loc"][0]) for details in error.errors(include_url=False) if details["loc"]}
+    rest = {key: value for key, value in source.data.items() if key not in wrong_keys}
+    return StudyForm.model_validate({"base": _NONE, **rest})
 
 
 def _fixed(
@@ -258,6 +289,8 @@ def _check_sample(form: StudyForm, faults: Faults) -> None:
 
 def _base(base: str, file: Path, source: YamlSource, problems: list[Problem]) -> tuple[YamlSource | None, Path]:
     """The scenario that is varied, read, and the folder that its files are relative to."""
+    if base == _NONE:
+        return None, file.parent
     beside = file.parent / base
     try:
         path = beside if beside.is_file() else resolve(base)
@@ -282,11 +315,12 @@ def _design(
 ) -> Design | None:
     if form.mode == "list":
         try:
-            axes, lines = read_points(file.parent / cast(str, form.points))
+            axes, lines, faults = read_points(file.parent / cast(str, form.points))
         except ScenarioError as error:
             problems += error.problems
             return None
         places |= lines
+        problems += faults
         return zipped(axes)
     if form.mode == "zip":
         return zipped(axes)
@@ -300,6 +334,12 @@ def _design(
     return design
 
 
+def _once(problems: Iterable[Problem]) -> list[Problem]:
+    found = ProblemList()
+    found.add(problems)
+    return found.all()
+
+
 class ProblemList:
     """Problems of many points, each told once. Full after so many that nobody reads them all."""
 
@@ -311,6 +351,10 @@ class ProblemList:
         for problem in problems:
             self._problems.setdefault(str(problem), problem)
 
+    def all(self) -> list[Problem]:
+        """Everything noted."""
+        return list(self._problems.values())
+
     @property
     def full(self) -> bool:
         """Whether there is no point in looking further."""
@@ -319,4 +363,4 @@ class ProblemList:
     def raise_if_any(self) -> None:
         """Raise ScenarioError with everything noted, if anything was."""
         if self._problems:
-            raise ScenarioError(in_order(list(self._problems.values())))
+            raise ScenarioError(in_order(self.all()))

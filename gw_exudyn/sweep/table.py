@@ -27,7 +27,7 @@ class Table:
     """What all points came to.
 
     status : of each. wall_time : (points,) s. metrics : name to (points,) in SI; NaN where there is none.
-    times : the different series of output times (s) of points that came out well, longest first.
+    times : the different series of output times (s), longest first; not those that begin another. At least one.
     """
 
     status: tuple[str, ...]
@@ -46,7 +46,7 @@ def write_table(study: Study, plan: Plan, place: SweepFolder, summary: Summary) 
     count = len(plan.ids)
     status, wall_time = [], np.full(count, np.nan)
     metrics = {name: np.full(count, np.nan) for name in metric_table()}
-    times: dict[str, Floats] = {}
+    times = _Times()
     part = place.path / f".{TABLE}.part"
     with as_storage_error(place.path):
         with open(part, "w", newline="", encoding="utf-8") as file:
@@ -62,8 +62,7 @@ def write_table(study: Study, plan: Plan, place: SweepFolder, summary: Summary) 
                             metrics[name][point] = _number(entry["value"])
                     if plan.first[found] == point:
                         _count(summary, Failure(found, point, status[-1], str(content["status"].get("sentence"))))
-                    if status[-1] in GOOD:
-                        _note_times(times, place.point(found))
+                    times.note(place.point(found), whole=status[-1] in GOOD)
                 numbers = [_text(values[point]) for values in (wall_time, *metrics.values())]
                 reason = "" if content is None or status[-1] in GOOD else str(content["status"].get("sentence"))
                 labels = [_text(label) for label in study.design.labels(point).values()]
@@ -71,8 +70,7 @@ def write_table(study: Study, plan: Plan, place: SweepFolder, summary: Summary) 
             file.flush()
             os.fsync(file.fileno())
         os.replace(part, place.path / TABLE)
-    longest = sorted(times.values(), key=len, reverse=True)
-    return Table(tuple(status), wall_time, metrics, tuple(longest))
+    return Table(tuple(status), wall_time, metrics, times.longest_first())
 
 
 def _heads(study: Study) -> list[str]:
@@ -99,15 +97,29 @@ def _count(summary: Summary, point: Failure) -> None:
         note_failure(summary, point)
 
 
-def _note_times(times: dict[str, Floats], folder: Path) -> None:
-    try:
-        lines = (folder / SERIES).read_text(encoding="utf-8").splitlines()[1:]
-    except FileNotFoundError:
-        return
-    column = [line.partition(",")[0] for line in lines]
-    key = ",".join(column)
-    if key not in times:
-        times[key] = np.array(column, dtype=float)
+class _Times:
+    """The different series of output times."""
+
+    def __init__(self) -> None:
+        self._texts: list[str] = []
+
+    def note(self, folder: Path, whole: bool) -> None:
+        """Note those of a point. A run that failed on its way has its last sample at a time of its own, which is left
+        out.
+        """
+        try:
+            lines = (folder / SERIES).read_text(encoding="utf-8").splitlines()[1:]
+        except FileNotFoundError:
+            return
+        column = [line.partition(",")[0] for line in (lines if whole else lines[:-1])]
+        text = "".join(f"{time}," for time in column)
+        if not any(known.startswith(text) for known in self._texts):
+            self._texts = [known for known in self._texts if not text.startswith(known)] + [text]
+
+    def longest_first(self) -> tuple[Floats, ...]:
+        """As arrays, s; the start alone where no point gave any."""
+        found = [np.array(text.rstrip(",").split(","), dtype=float) for text in self._texts if text]
+        return tuple(sorted(found, key=len, reverse=True)) or (np.zeros(1),)
 
 
 def read_series(folder: Path) -> dict[str, Floats] | None:
