@@ -48,7 +48,9 @@ def read_points(path: Path) -> tuple[list[Axis], dict[str, Place], list[Problem]
         raise ScenarioError(problems)
     paths = [dotted for dotted, _ in columns]
     axes = _axes(paths, [[values[i] for _, values in read] for i in range(len(paths))], name, head_line)
-    places = {f"vary.{dotted}.{row}": (name, line) for dotted in paths for row, (line, _) in enumerate(read)}
+    places: dict[str, Place] = {
+        f"vary.{dotted}.{row}": (name, line) for dotted in paths for row, (line, _) in enumerate(read)
+    }
     return axes, places, problems
 
 

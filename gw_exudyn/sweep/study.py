@@ -30,6 +30,9 @@ STUDIES = "studies"
 """The folder of shipped studies beside the shipped scenarios."""
 
 _MOST_PROBLEMS = 1000
+_AT = "; first at point"
+"""Goes before the point whose scenario is wrong at a place outside the study; problems that differ in it are one."""
+
 _NONE = "-"
 """Stands for a base that the file does not give, which is told already."""
 
@@ -106,9 +109,17 @@ class Study:
     def scenario(self, point: int) -> Scenario:
         """The scenario of a point. Raises ScenarioError, with the places in the study file of what is wrong."""
         try:
-            return scenario_from_source(self._source, {**self.fixed, **self.design.values(point)}, self._folder)
+            given = {**self.fixed, **self.design.values(point)}
+            overrides = {path: self._beside(path, value) for path, value in given.items()}
+            return scenario_from_source(self._source, overrides, self._folder)
         except ScenarioError as error:
             raise ScenarioError(self.placed(error.problems, point)) from None
+
+    def _beside(self, path: str, value: Any) -> Any:
+        """A file that the study names, beside the study; one that is not there is looked for beside the base."""
+        if path.rpartition(".")[2] == "file" and isinstance(value, str) and (self.file.parent / value).is_file():
+            return str((self.file.parent / value).absolute())
+        return value
 
     def placed(self, problems: Iterable[Problem], point: int) -> list[Problem]:
         """Problems of a point's scenario, those with an override told at its place in the study file."""
@@ -117,7 +128,8 @@ class Study:
     def _placed(self, problem: Problem, point: int) -> Problem:
         path = (problem.file or "").removeprefix(OVERRIDE)
         if not (problem.file or "").startswith(OVERRIDE):
-            return problem
+            labels = ", ".join(f"{path} {label}" for path, label in self.design.labels(point).items())
+            return Problem(problem.path, f"{problem.message}{_AT} {point} ({labels})", problem.file, problem.line)
         file, line = self._place(path, point)
         return Problem(problem.path, problem.message, file, line)
 
@@ -349,7 +361,7 @@ class ProblemList:
     def add(self, problems: Iterable[Problem]) -> None:
         """Note problems that were not noted yet."""
         for problem in problems:
-            self._problems.setdefault(str(problem), problem)
+            self._problems.setdefault(str(problem).partition(_AT)[0], problem)
 
     def all(self) -> list[Problem]:
         """Everything noted."""
