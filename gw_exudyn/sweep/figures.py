@@ -31,7 +31,7 @@ def write_figures(study: Study, place: SweepFolder, table: Table, runs: Mapping[
     from gw_exudyn.plots.save import save_figure
 
     with xr.open_dataset(place.path / DATASET, engine="h5netcdf", decode_times=False) as dataset:
-        for name, draw in _wanted(study, table, runs, dataset).items():
+        for name, draw in wanted(study, table, runs, dataset).items():
             try:
                 figure = draw()
                 if figure is not None:
@@ -43,9 +43,10 @@ def write_figures(study: Study, place: SweepFolder, table: Table, runs: Mapping[
                 warnings.warn(told, RuntimeWarning, stacklevel=2)
 
 
-def _wanted(
+def wanted(
     study: Study, table: Table, runs: Mapping[str, Path], dataset: xr.Dataset
 ) -> dict[str, Callable[[], Figure | None]]:
+    """The figures that fit a study, by name, each as what draws it; None where there is nothing to draw."""
     from gw_exudyn.sweep.plot_bands import plot_bands
     from gw_exudyn.sweep.plot_curves import plot_curves
     from gw_exudyn.sweep.plot_metrics import plot_map, plot_matrix, plot_response

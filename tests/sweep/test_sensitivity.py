@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import dataclasses
-
 import numpy as np
 import pytest
 import xarray as xr
 
 from gw_exudyn.sweep.bands import band
+from gw_exudyn.sweep.figures import wanted
 from gw_exudyn.sweep.run import Options, run_sweep
 from gw_exudyn.sweep.sensitivity import indices
 from gw_exudyn.sweep.table import Table
@@ -96,11 +95,22 @@ def test_a_band_over_different_depths_compares_equal_depths(study):
 def test_a_study_of_sensitivity_leaves_its_indices_and_figures(study, tmp_path):
     vary = "contact.friction_coefficient: {uniform: [0.1, 0.4]}\nwire.imperfection: {uniform: [0.01 1/m, 0.1 1/m]}"
     found = study(vary, mode="sample", method="morris", samples=4, metrics="[push_force_max, snaps]")
-    summary = run_sweep(found, tmp_path / "out", dataclasses.replace(Options(jobs=1)))
-    assert {file.name for file in summary.files if file.suffix == ".png"} == {
-        *("curves.png", "matrix.png", "bands.png", "sensitivity.png", "best_and_worst.png")
-    }
+    summary = run_sweep(found, tmp_path / "out", Options(jobs=1, figures=False))
     lines = (tmp_path / "out" / "sensitivity.csv").read_text().splitlines()
     assert lines[0] == "metric,parameter,index,value,confidence_95,unit,meaning"
     assert len(lines) == 5  # two parameters, mu_star and sigma
     assert summary.notes == ["no sensitivity of snaps: it is the same at all points"]
+    with xr.open_dataset(tmp_path / "out" / "sweep.nc") as data:
+        values = table_of(found, data)
+        figures = {name: draw() for name, draw in wanted(found, values, {}, data).items()}
+    assert set(figures) == {"curves", "matrix", "bands", "sensitivity"}
+    labels = {axes.get_xlabel() for figure in figures.values() for axes in figure.axes}
+    assert {"insertion depth [mm]", "push force max [mN]", "wire: imperfection [1/m]"} <= labels
+    for figure in figures.values():
+        figure.draw_without_rendering()
+
+
+def table_of(study, data) -> Table:
+    names = [name for name in data if str(name).startswith("metric_")]
+    found = {str(name).removeprefix("metric_"): data[name].values for name in names}
+    return Table(tuple(data["status"].values), data["wall_time"].values, found, (data["time"].values,))

@@ -42,8 +42,8 @@ def test_spaced_values_have_the_parameters_unit_and_kind(study):
 
 
 def test_wires_of_the_catalogue_and_labelled_parts_of_a_scenario(study):
-    vary = "wire.model: catalogue\nwire.tip_shape:\n  values: [{kind: straight}, {kind: arc, length: 5 mm, angle: 30 deg}]\n"
-    found = study(vary + "  labels: [straight, curved]")
+    tips = "wire.tip_shape:\n  values: [{kind: straight}, {kind: arc, length: 5 mm, angle: 30 deg}]\n"
+    found = study(f"wire.model: catalogue\n{tips}  labels: [straight, curved]")
     assert "universal-ii" in column(found, "wire.model")
     assert column(found, "wire.tip_shape")[:2] == ["straight", "curved"]
     assert found.scenario(1).wire.tip_shape.kind == "arc"

@@ -36,38 +36,36 @@ def manifests(folder: Path = OUT) -> dict[str, bytes]:
     return {file.parent.name: file.read_bytes() for file in folder.glob("points/*/run.json")}
 
 
-def test_points_that_fail_cost_themselves_alone_and_are_run_again_on_demand(study):
+def test_points_that_fail_cost_themselves_alone_and_are_run_again_on_demand(study, tmp_path):
     odd = [odd_runners.HANG, odd_runners.EXIT, odd_runners.SEGFAULT, odd_runners.RAISE]
-    # 36 mm of five long segments do not go round the corner: a run that ends as not to be trusted.
-    jammed = "\ndrive.distance: [4 mm, 36 mm]"
+    # 36 mm of six long segments do not go round the corner: a run that ends as not to be trusted.
+    points = [(0.4, 4), (0.4, 36), *((friction, 4) for friction in odd)]
+    lines = ["contact.friction_coefficient,drive.distance [mm]", *(f"{friction},{way}" for friction, way in points)]
+    (tmp_path / "points.csv").write_text("\n".join(lines))
     settings = "{wire.segments: 6, solver.step: 0.1 s, output.interval: 0.5 s}"
-    found = study(f"contact.friction_coefficient: {[0.4, *odd]}{jammed}", base="corner90-universal", set=settings)
-    options = dataclasses.replace(PLAIN, timeout=4.0, runner="odd_runners:OddRunner")
+    found = study("", base="corner90-universal", set=settings, mode="list", points="points.csv")
+    options = dataclasses.replace(PLAIN, timeout=3.0, runner="odd_runners:OddRunner")
     summary = run_sweep(found, OUT, options)
-    assert (summary.run, summary.completed, summary.failed) == (10, 1, 9)
+    assert (summary.run, summary.completed, summary.failed) == (6, 1, 5)
     table = rows()
-    assert [row["status"] for row in table[::2]] == ["completed", "timed_out", "crashed", "crashed", "error"]
-    assert table[1]["status"] == "too_deep"
-    assert "SIGSEGV" in table[6]["reason"]
+    assert [row["status"] for row in table] == ["completed", "too_deep", "timed_out", "crashed", "crashed", "error"]
+    assert "SIGSEGV" in table[4]["reason"]
     assert float(table[0]["push_force_max [N]"]) > 0
     assert table[2]["push_force_max [N]"] == ""
+    # The run that failed on its way is in the data set as far as it got.
+    with xr.open_dataset(OUT / "sweep.nc") as data:
+        known = np.isfinite(data["push_force"].values).sum(axis=1)
+        assert known[1] > known[0] == 5
+        assert known[2:].tolist() == [0, 0, 0, 0]
+        assert data["status"].values.tolist() == [row["status"] for row in table]
 
     before = manifests()
     again = run_sweep(found, OUT, options)
-    assert (again.run, again.earlier, again.failed) == (0, 10, 9)
+    assert (again.run, again.earlier, again.failed) == (0, 6, 5)
     assert manifests() == before
-
     retried = run_sweep(found, OUT, dataclasses.replace(options, retry_failed=True))
-    assert (retried.run, retried.completed, retried.failed) == (9, 1, 9)
-    completed = table[0]["id"]
-    assert manifests()[completed] == before[completed]
-
-    # The run that failed on its way is in the data set as far as it got.
-    with xr.open_dataset(OUT / "sweep.nc") as data:
-        curve = data["push_force"].sel(drive_distance=0.036, contact_friction_coefficient=0.4)
-        assert 0 < np.isfinite(curve.values).sum() < curve.sizes["time"] or np.isfinite(curve.values).all()
-        assert data["status"].values[0, 1] == "too_deep"
-        assert np.isnan(data["metric_push_force_max"].values[1, 0])
+    assert (retried.run, retried.completed, retried.failed) == (5, 1, 5)
+    assert manifests()[table[0]["id"]] == before[table[0]["id"]]
 
 
 def test_a_grid_is_a_data_set_with_its_parameters_as_dimensions(study):
@@ -109,24 +107,19 @@ def test_blocks_of_the_data_set_hold_every_point_in_its_place(study, monkeypatch
     assert largest == pytest.approx([float(simulate(found.scenario(i)).values("push_force").max()) for i in range(6)])
 
 
-def test_fresh_runs_everything_again_and_another_study_shares_the_points(study):
+def test_what_is_damaged_or_forgotten_is_run_again_and_what_another_study_shares_is_not(study):
     found = study()
     run_sweep(found, OUT, PLAIN)
     first = manifests()
+    damaged = next(OUT.glob("points/*/run.json"))
+    damaged.write_text("{")
+    assert run_sweep(found, OUT, PLAIN).run == 1
+    assert json.loads(damaged.read_text())["status"]["name"] == "completed"
     assert run_sweep(found, OUT, dataclasses.replace(PLAIN, fresh=True)).run == 2
     assert manifests().keys() == first.keys()
     wider = study("contact.friction_coefficient: [0.2, 0.3]")
     assert run_sweep(wider, OUT, PLAIN).run == 1
     assert len(rows()) == 2
-
-
-def test_a_damaged_point_is_run_again(study):
-    found = study()
-    run_sweep(found, OUT, PLAIN)
-    damaged = next(OUT.glob("points/*/run.json"))
-    damaged.write_text("{")
-    assert run_sweep(found, OUT, PLAIN).run == 1
-    assert json.loads(damaged.read_text())["status"]["name"] == "completed"
 
 
 def test_a_sweep_that_is_stopped_keeps_what_it_has_and_goes_on(study):
@@ -154,7 +147,8 @@ def test_a_folder_that_is_not_ours_is_left_alone(study):
 def test_a_second_sweep_into_the_folder_is_refused(study):
     with SweepFolder(OUT), pytest.raises(StorageError, match="another sweep is writing to this folder"):
         run_sweep(study(), OUT, PLAIN)
-    assert run_sweep(study(), OUT, PLAIN).completed == 2
+    with SweepFolder(OUT):  # given up, it can be had again
+        pass
 
 
 def test_a_disk_that_is_full_leaves_nothing_half_written(study):
