@@ -37,6 +37,7 @@ def plot_indices(study: Study, table: Table) -> Figure | None:
         return None
     figure = new_figure(2.2 + 4.2 * len(found), 1.6 + 0.7 * len(study.design.axes))
     panels = figure.subplots(1, len(found), sharey=True, squeeze=False)[0]
+    panels[0].invert_yaxis()  # for all panels: they share the axis
     for axes, (metric, several) in zip(panels, found.items(), strict=True):
         _bars(axes, metric, several, [axis.path for axis in study.design.axes])
     handles, labels = panels[0].get_legend_handles_labels()
@@ -62,6 +63,5 @@ def _bars(axes: Any, metric: str, several: list[Index], paths: list[str]) -> Non
             place, size, 0.38, xerr=bars, color=colour, label=_WORDS[name], error_kw={"linewidth": 1, "capsize": 3}
         )
     axes.set_yticks(range(len(paths)), paths, fontsize=9)
-    axes.invert_yaxis()
     axes.axvline(0.0, color="black", linewidth=0.6)
-    axes.set_xlabel(text)
+    axes.set_xlabel(f"share of the variance of {text}" if "S1" in names else text)

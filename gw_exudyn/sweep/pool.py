@@ -20,6 +20,17 @@ _WINDOW = 4
 """Points under way or waiting for each thread of a worker: enough that none waits for the next, few enough that ten
 thousand points need no more memory than ten."""
 
+_SETTINGS = {
+    "distributed.scheduler.allowed-failures": 3,
+    # What dask watches of itself costs processor time that points need.
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.system-monitor.interval": "5s",
+    "distributed.admin.system-monitor.gil.enabled": False,
+    "distributed.admin.tick.interval": "1s",
+    "distributed.admin.tick.limit": "1h",
+    "distributed.scheduler.work-stealing-interval": "1s",
+}
+
 _LOOK = 0.2  # seconds between two looks at whether to stop
 _COUNT_WORKERS = 25  # looks between two counts of the workers
 
@@ -129,7 +140,7 @@ def pool(jobs: int, scheduler: str | None, runner: str, timeout: float | None) -
     logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what goes wrong is told by our own words
     name = f"gw-exudyn-{secrets.token_hex(8)}"
     with ExitStack() as stack:
-        stack.enter_context(dask.config.set({"distributed.scheduler.allowed-failures": 3}))
+        stack.enter_context(dask.config.set(_SETTINGS))
         address = scheduler if scheduler is not None else stack.enter_context(_on_this_machine(jobs))
         try:
             client = stack.enter_context(make_client(address, timeout=CONNECT_LIMIT, set_as_default=False))
