@@ -141,9 +141,8 @@ def speed(count: int) -> None:
         print(f"  processor time of a point {work / count:.3f} s, clock {spans[jobs] * jobs / count:.3f} s")
         print(f"  children wait {share:.4f} of their time ({each * 1e3:.1f} ms a point), goal: {verdict(share, 0.03)}")
         print(f"  processor time of the sweep and its workers over that of the points: {verdict(rest, 0.03)}")
-        print(
-            f"  speed-up to expect of {jobs} cores of its own, all of that taken off: {jobs * (1 - share) / (1 + rest):.3f}"
-        )
+        expected = jobs * (1 - share) / (1 + rest)
+        print(f"  speed-up to expect of {jobs} cores of its own, all of that taken off: {expected:.3f}")
     print(f"speed-up measured on the clock: {spans[1] / spans[2]:.3f} (goal >= 1.85), load {os.getloadavg()[0]:.1f}")
     print(f"same bits on one and two workers: {'yes' if len(digests) == 1 else 'NO'}")
 
