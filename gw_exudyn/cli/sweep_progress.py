@@ -17,9 +17,6 @@ if TYPE_CHECKING:
 _SECONDS_A_LINE = 10.0
 """Between two lines of progress where stderr is no terminal."""
 
-_MANY = 2000
-"""Points whose checking takes long enough to be told of."""
-
 
 def cores() -> int:
     """Processor cores that this process may use."""
@@ -31,9 +28,15 @@ def cores() -> int:
 @contextmanager
 def checking(points: int, quiet: bool) -> Iterator[Callable[[int], None]]:
     """Give a function to call with the number of points that were checked."""
-    if not quiet and points >= _MANY:
-        tell(f"checking {points} points")
-    yield lambda _: None
+    last = time.monotonic()
+
+    def look(checked: int) -> None:
+        nonlocal last
+        if not quiet and time.monotonic() - last >= _SECONDS_A_LINE:
+            last = time.monotonic()
+            tell(f"checked {checked} of {points} points")
+
+    yield look
 
 
 @contextmanager

@@ -11,12 +11,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from gw_exudyn.sweep.run import Summary, run_sweep
+    from gw_exudyn.sweep.run import Options, Summary, run_sweep
     from gw_exudyn.sweep.study import Study, load_study
 
-_HOME = {"Study": "study", "Summary": "run", "load_study": "study", "run_sweep": "run"}
+_HOME = {"Options": "run", "Study": "study", "Summary": "run", "load_study": "study", "run_sweep": "run"}
 
-__all__ = ["Study", "Summary", "load_study", "run_sweep"]
+__all__ = ["Options", "Study", "Summary", "load_study", "run_sweep"]
 
 
 def __getattr__(name: str) -> Any:

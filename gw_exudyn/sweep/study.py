@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -30,6 +31,7 @@ STUDIES = "studies"
 """The folder of shipped studies beside the shipped scenarios."""
 
 _MOST_PROBLEMS = 1000
+_NAME = re.compile(r"\w[\w.+-]{0,99}")
 _AT = "; first at point"
 """Goes before the point whose scenario is wrong at a place outside the study; problems that differ in it are one."""
 
@@ -68,6 +70,14 @@ class StudyForm(Section):
     method: Annotated[str, Choice(METHODS)] = "latin-hypercube"
     seed: Annotated[int, Whole(0, 2**31 - 1)] = 0
     metrics: Annotated[tuple[str, ...], Table(Text("metric"), 1, 200, "metric")] = ("push_force_max",)
+
+    @field_validator("name", mode="after")
+    @classmethod
+    def _names_a_folder(cls, name: str | None) -> str | None:
+        if name is not None and _NAME.fullmatch(name) is None:
+            allowed = "letters, digits and _ . + - are allowed, a letter or digit first, 100 in all"
+            raise wrong(f"{shown(name)} cannot name a folder; {allowed}")
+        return name
 
     @field_validator("metrics", mode="after")
     @classmethod
@@ -143,7 +153,7 @@ class Study:
 
 
 def load_study(path_or_name: str | os.PathLike[str], overrides: Sequence[str] = ()) -> Study:
-    """Read a study file and check it; `check_points` checks its points.
+    """Read a study file and check it; `make_plan` checks its points.
 
     path_or_name : a YAML file, or the name of a shipped study. overrides : `path=value`, for all points, beside those
     of the file's `set`.

@@ -101,6 +101,21 @@ def test_a_sweep_that_is_killed_leaves_whole_points_and_no_process_and_goes_on(s
     assert sorted(series) == sorted(series_text(simulate(found.scenario(point))) for point in range(8))
 
 
+def test_a_worker_that_is_killed_is_replaced_and_no_point_is_lost(study, tmp_path, monkeypatch):
+    monkeypatch.setenv("SLOW_NOTES", str(tmp_path))
+    found = study(POINTS)
+    with started(str(HERE / "slow_sweep.py"), str(found.file), "out") as process:
+        until(lambda: len(finished()) >= 2)
+        parents = alive()
+        worker = next(parent for child, parent in parents.items() if parent in descendants(process.pid))
+        children = descendants(worker)
+        os.kill(worker, signal.SIGKILL)
+        assert process.wait(timeout=90) == 0
+    assert not children & alive().keys()
+    assert len(finished()) == 8
+    assert all(json.loads(file.read_text())["trusted"] for file in finished())
+
+
 def test_ctrl_c_at_the_terminal_keeps_what_is_done(write_study):
     sweep = ("-m", "gw_exudyn", "sweep", str(write_study(POINTS, set=LONGER)))
     options = ("--out", "out", "--jobs", "2", "--json")

@@ -128,6 +128,7 @@ def test_everything_wrong_with_a_study_is_told_at_once(write_study):
     ("given", "told"),
     [
         ({"mode": "sample"}, "samples: is missing"),
+        ({"name": "../../etc"}, "name: '../../etc' cannot name a folder"),
         (
             {"mode": "sample", "samples": 12, "method": "sobol"},
             "12 is no power of 2, which Sobol's points need: 8 or 16",

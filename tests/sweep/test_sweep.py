@@ -6,7 +6,6 @@ import csv
 import dataclasses
 import json
 import os
-import resource
 import threading
 from pathlib import Path
 
@@ -152,6 +151,7 @@ def test_a_second_sweep_into_the_folder_is_refused(study):
 
 
 def test_a_disk_that_is_full_leaves_nothing_half_written(study):
+    resource = pytest.importorskip("resource")
     with SweepFolder(OUT) as folder:
         folder.add("first", {"run.json": b"{}"})
         before = resource.getrlimit(resource.RLIMIT_FSIZE)
