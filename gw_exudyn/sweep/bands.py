@@ -36,7 +36,7 @@ class Band:
 
 def band(study: Study, dataset: xr.Dataset, name: str) -> Band:
     """The band of a curve over insertion depth where all runs only push in, else over time."""
-    good = dataset["status"].values.ravel() == "completed"
+    good = dataset["trusted"].values.ravel() == 1
     depth, values = (_rows(dataset, one)[good] for one in ("insertion_depth", name))
     if _rising(depth):
         abscissa, places = "insertion_depth", depth

@@ -33,7 +33,7 @@ _AT_ONCE = 2_000_000
 
 def names_of(axes: tuple[Axis, ...]) -> dict[str, str]:
     """Name in the data set of each path: `contact_friction_coefficient`."""
-    taken = {"point", "id", "status", "wall_time", "output", *SERIES_COLUMNS}
+    taken = {"point", "id", "status", "trusted", "wall_time", "output", *SERIES_COLUMNS}
     names: dict[str, str] = {}
     for axis in axes:
         name = axis.path.replace(".", "_")
@@ -53,7 +53,7 @@ def write_dataset(study: Study, plan: Plan, place: SweepFolder, table: Table) ->
     """Write sweep.nc: the parameters are its dimensions for a grid, else `point` is.
 
     Time series have the dimension `time` where all points give their outputs at the same times; else `output`, with
-    `time` as a series of its own. A point that failed between two outputs has its last sample in its own series.csv
+    `time` as a series of its own. A point that ended between two outputs has its last sample in its own series.csv
     only.
     """
     times = common_times(table)
@@ -100,6 +100,8 @@ def _write(
         _put(file, "id", dims, np.array(plan.ids, dtype=object).reshape(design.shape), {"long_name": "id of the point"})
         status = np.array(table.status, dtype=object).reshape(design.shape)
         _put(file, "status", dims, status, {"long_name": "how the point ended", **further})
+        attrs = {"units": "1", "long_name": "1: the numbers of the point can be trusted; 0: it failed", **further}
+        _put(file, "trusted", dims, table.good.astype(np.int8).reshape(design.shape), attrs)
         attrs = {"units": "s", "long_name": "time of the solution on the clock", **further}
         _put(file, "wall_time", dims, table.wall_time.reshape(design.shape), attrs)
         for name, metric in metric_table().items():
@@ -143,7 +145,8 @@ def _put(file: Any, name: str, dims: tuple[str, ...], values: Any, attrs: dict[s
     if values.dtype == object:
         variable = file.create_variable(name, dims, dtype=h5py.string_dtype())
     else:
-        variable = file.create_variable(name, dims, dtype=values.dtype, fillvalue=np.nan)
+        fill = np.nan if values.dtype.kind == "f" else None
+        variable = file.create_variable(name, dims, dtype=values.dtype, fillvalue=fill)
     variable[...] = values
     variable.attrs.update(attrs)
 
@@ -217,7 +220,7 @@ def _fill(
         for name, block in blocks.items():
             block[row, :count] = series[name][:count]
         return
-    # A run that failed on its way has a last sample at a time of its own.
+    # A run that ended on its way has a last sample at a time of its own.
     places = np.searchsorted(times, series["time"])
     there = (places < length) & (times[np.minimum(places, length - 1)] == series["time"])
     for name, block in blocks.items():

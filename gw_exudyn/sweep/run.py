@@ -16,9 +16,6 @@ from gw_exudyn.sweep.pool import Pool, pool
 from gw_exudyn.sweep.runner import SIMULATION, Outcome, Task
 from gw_exudyn.sweep.study import ProblemList, Study
 
-GOOD = ("completed",)
-"""Status of a point that came out well; with any other it counts as failed."""
-
 _FAILURES_TOLD = 1000
 """Failed points that a summary names; sweep.csv has them all."""
 
@@ -44,7 +41,7 @@ class Options:
 @dataclass
 class Progress:
     """How far a sweep is. points : different ones in all. earlier : done before this call. done : in this call, of
-    which failed. threads : of all workers.
+    which failed: gave nothing that can be trusted. threads : of all workers.
     """
 
     points: int
@@ -142,7 +139,7 @@ def _is_there(folder: Path, options: Options) -> bool:
     content = read_point(folder)
     if content is None:
         return False
-    good = content["status"].get("name") in GOOD
+    good = content.get("trusted") is True
     if options.retry_failed and not good:
         return False
     return not (options.keep_runs and good and not (folder / DATA).is_file())
@@ -245,7 +242,7 @@ class _Sweep:
         files = outcome.files if MANIFEST in outcome.files else {MANIFEST: _failure(task, outcome, self._plan.maker)}
         self._place.add(task.id, files)
         self._progress.done += 1
-        self._progress.failed += outcome.status not in GOOD
+        self._progress.failed += not outcome.trusted
 
     def _checked(self, outcome: Outcome) -> Outcome:
         """The outcome, unless it was made by other software than the point's id says."""

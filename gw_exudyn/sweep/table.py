@@ -10,41 +10,39 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gw_exudyn.result import Floats
 from gw_exudyn.storage.series import SERIES
 from gw_exudyn.sweep.folder import SweepFolder, as_storage_error, read_point
 from gw_exudyn.sweep.metric_names import metric_table
-from gw_exudyn.sweep.run import GOOD, Failure, Plan, Summary, note_failure
+from gw_exudyn.sweep.run import Failure, Plan, Summary, note_failure
 from gw_exudyn.sweep.study import Study
 
 TABLE = "sweep.csv"
 NOT_RUN = "not_run"
+COMPLETED = "completed"
 
 
 @dataclass(frozen=True)
 class Table:
     """What all points came to.
 
-    status : of each. wall_time : (points,) s. metrics : name to (points,) in SI; NaN where there is none.
+    status : of each. good : (points,) it came out well, so that its numbers can be trusted. wall_time : (points,) s. metrics : name to (points,) in SI; NaN where there is none.
     times : the different series of output times (s), longest first; not those that begin another. At least one.
     """
 
     status: tuple[str, ...]
+    good: NDArray[np.bool_]
     wall_time: Floats
     metrics: Mapping[str, Floats]
     times: tuple[Floats, ...]
-
-    @property
-    def good(self) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        """(points,) whether a point came out well."""
-        return np.array([status in GOOD for status in self.status])
 
 
 def write_table(study: Study, plan: Plan, place: SweepFolder, summary: Summary) -> Table:
     """Read all points, write sweep.csv, and count in `summary` what came out."""
     count = len(plan.ids)
-    status, wall_time = [], np.full(count, np.nan)
+    status, wall_time, good = [], np.full(count, np.nan), np.zeros(count, dtype=bool)
     metrics = {name: np.full(count, np.nan) for name in metric_table()}
     times = _Times()
     part = place.path / f".{TABLE}.part"
@@ -60,23 +58,25 @@ def write_table(study: Study, plan: Plan, place: SweepFolder, summary: Summary) 
                     for name, entry in content.get("metrics", {}).items():
                         if name in metrics:
                             metrics[name][point] = _number(entry["value"])
+                    good[point] = content.get("trusted") is True
                     if plan.first[found] == point:
-                        _count(summary, Failure(found, point, status[-1], str(content["status"].get("sentence"))))
-                    times.note(place.point(found), whole=status[-1] in GOOD)
+                        failure = Failure(found, point, status[-1], str(content["status"].get("sentence")))
+                        _count(summary, good[point], failure)
+                    times.note(place.point(found), whole=status[-1] == COMPLETED)
                 numbers = [_text(values[point]) for values in (wall_time, *metrics.values())]
-                reason = "" if content is None or status[-1] in GOOD else str(content["status"].get("sentence"))
+                reason = "" if content is None or status[-1] == COMPLETED else str(content["status"].get("sentence"))
                 labels = [_text(label) for label in study.design.labels(point).values()]
-                writer.writerow([point, found, *labels, status[-1], reason, *numbers])
+                writer.writerow([point, found, *labels, status[-1], str(good[point]).lower(), reason, *numbers])
             file.flush()
             os.fsync(file.fileno())
         os.replace(part, place.path / TABLE)
-    return Table(tuple(status), wall_time, metrics, times.longest_first())
+    return Table(tuple(status), good, wall_time, metrics, times.longest_first())
 
 
 def _heads(study: Study) -> list[str]:
     axes = [axis.path if axis.unit is None else f"{axis.path} [{axis.unit}]" for axis in study.design.axes]
     metrics = [f"{name} [{metric.unit}]" for name, metric in metric_table().items()]
-    return ["point", "id", *axes, "status", "reason", "wall_time [s]", *metrics]
+    return ["point", "id", *axes, "status", "trusted", "reason", "wall_time [s]", *metrics]
 
 
 def _number(value: Any) -> float:
@@ -90,8 +90,8 @@ def _text(value: float | str) -> str:
     return "" if np.isnan(value) else repr(float(value))
 
 
-def _count(summary: Summary, point: Failure) -> None:
-    if point.status in GOOD:
+def _count(summary: Summary, good: np.bool_, point: Failure) -> None:
+    if good:
         summary.completed += 1
     else:
         note_failure(summary, point)
@@ -104,7 +104,7 @@ class _Times:
         self._texts: list[str] = []
 
     def note(self, folder: Path, whole: bool) -> None:
-        """Note those of a point. A run that failed on its way has its last sample at a time of its own, which is left
+        """Note those of a point. A run that ended on its way has its last sample at a time of its own, which is left
         out.
         """
         try:

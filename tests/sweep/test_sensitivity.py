@@ -23,7 +23,8 @@ def table(study, function, failed: tuple[int, ...] = ()) -> Table:
     values = np.array([function(*row) for row in rows])
     status = tuple("crashed" if point in failed else "completed" for point in range(len(study)))
     values[list(failed)] = np.nan
-    return Table(status, values, {METRIC: values}, (np.zeros(1),))
+    good = np.array([one == "completed" for one in status])
+    return Table(status, good, values, {METRIC: values}, (np.zeros(1),))
 
 
 def test_sobol_indices_of_a_sum_and_of_a_product(study):
@@ -73,7 +74,7 @@ def test_a_band_holds_the_quantiles_of_the_points_that_get_there(study):
     depth[90:, 2] = force[90:, 2] = np.nan  # they ended early
     dims = ("point", "time")
     data = xr.Dataset({"insertion_depth": (dims, depth), "push_force": (dims, force)}, {"time": [0.0, 1.0, 2.0]})
-    data["status"] = ("point", ["completed"] * 101)
+    data["trusted"] = ("point", [1] * 101)
     one = band(found, data, "push_force")
     assert one.abscissa == "insertion_depth"
     assert (one.low[1], one.median[1], one.high[1]) == (5.0, 50.0, 95.0)
@@ -86,7 +87,7 @@ def test_a_band_over_different_depths_compares_equal_depths(study):
     depth = np.array([[0.0, 1.0, 2.0], [0.0, 2.0, 4.0]])
     dims = ("point", "time")
     data = xr.Dataset({"insertion_depth": (dims, depth), "push_force": (dims, 3 * depth)}, {"time": [0.0, 1.0, 2.0]})
-    data["status"] = ("point", ["completed"] * 2)
+    data["trusted"] = ("point", [1] * 2)
     one = band(found, data, "push_force")
     assert one.x.max() == pytest.approx(2.0, abs=0.03)  # only one gets further
     assert one.median == pytest.approx(3 * one.x)
@@ -113,4 +114,10 @@ def test_a_study_of_sensitivity_leaves_its_indices_and_figures(study, tmp_path):
 def table_of(study, data) -> Table:
     names = [name for name in data if str(name).startswith("metric_")]
     found = {str(name).removeprefix("metric_"): data[name].values for name in names}
-    return Table(tuple(data["status"].values), data["wall_time"].values, found, (data["time"].values,))
+    return Table(
+        tuple(data["status"].values),
+        data["trusted"].values == 1,
+        data["wall_time"].values,
+        found,
+        (data["time"].values,),
+    )
