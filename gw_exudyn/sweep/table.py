@@ -28,7 +28,8 @@ COMPLETED = "completed"
 class Table:
     """What all points came to.
 
-    status : of each. good : (points,) it came out well, so that its numbers can be trusted. wall_time : (points,) s. metrics : name to (points,) in SI; NaN where there is none.
+    status : of each. good : (points,) it came out well, so that its numbers can be trusted. wall_time : (points,) s.
+    metrics : name to (points,) in SI; NaN where there is none.
     times : the different series of output times (s), longest first; not those that begin another. At least one.
     """
 
