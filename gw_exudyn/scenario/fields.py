@@ -31,6 +31,9 @@ from gw_exudyn.scenario.words import did_you_mean, nearest, plural, shown
 
 Loc = tuple[str | int, ...]
 
+IN_SI = "in SI: "
+"""What the JSON schema's description of a bare number begins with; its unit follows."""
+
 KIND_TAG = "kind="
 """Pydantic puts the tag of a union into the place of an error; ours begin with this, to be taken out again."""
 
@@ -176,7 +179,7 @@ class Quantity(Kind):
         """A number in SI within its limits, or text with a unit."""
         units = ", ".join(units_that_fit(self.unit))
         options: list[dict[str, Any]] = [
-            {"type": "number", "minimum": self.low, "maximum": self.high, "description": f"in SI: {self.unit}"},
+            {"type": "number", "minimum": self.low, "maximum": self.high, "description": f"{IN_SI}{self.unit}"},
             {"type": "string", "pattern": r"^\s*[+-]?[0-9.]", "description": f"number, space, unit: {units}"},
         ]
         options += [{"const": word} for word in self.words]
