@@ -33,7 +33,7 @@ ARC_RADIUS = Quantity("m", 0.1e-3, 5.0, "mm")
 ANGLE = Quantity("rad", -FULL_TURN, FULL_TURN, "deg")
 COORDINATE = Quantity("m", -10.0, 10.0, "mm")
 POINT = Row(("x", "y"), (COORDINATE, COORDINATE))
-BORE = Quantity("m", 0.05e-3, 50e-3, "mm", optional=True)
+BORE = Quantity("m", 0.05e-3, 50e-3, "mm", optional=True, zero="sleeve")
 
 MOMENT = Quantity("N*m", -1e3, 1e3, "N*mm")
 DISC_RADIUS = Quantity("m", 1e-6, 1.0, "mm")
