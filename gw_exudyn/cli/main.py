@@ -29,7 +29,7 @@ COMMANDS: Mapping[str, str] = MappingProxyType(
             "list",
             "schema",
         )
-    }  # fmt: skip
+    }
 )
 """Name of each command and the module that holds it as `command`, in the order of the help."""
 

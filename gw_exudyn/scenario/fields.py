@@ -113,7 +113,7 @@ class Quantity(Kind):
 
     unit : its SI unit. low, high : the plausible, in SI, both allowed. usual : the unit in which limits are told.
     also : other SI units whose dimension is taken. auto : the word `auto` stands for None. optional : so does nothing
-        at all. off : the word `off` stands for infinite.
+        at all. off : the word `off` stands for infinite. zero : a word that stands for 0, which no number may.
     """
 
     unit: str
@@ -124,11 +124,13 @@ class Quantity(Kind):
     auto: bool = False
     optional: bool = False
     off: bool = False
+    zero: str = ""
 
     @property
     def words(self) -> dict[str, float | None]:
         """The words that may stand for a value, and the value of each."""
-        return ({"auto": None} if self.auto else {}) | ({"off": math.inf} if self.off else {})
+        words: dict[str, float | None] = {"auto": None} if self.auto else {}
+        return words | ({"off": math.inf} if self.off else {}) | ({self.zero: 0.0} if self.zero else {})
 
     def word_for(self, value: float | None) -> str:
         """The word that stands for a value; empty where none does."""
