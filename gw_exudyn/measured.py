@@ -56,8 +56,9 @@ _EXAMPLE = "time [s],tip_x [mm],tip_y [mm],push_force [mN]"
 
 
 def aligned(measured: Course, run: Course) -> Course:
-    """The measured path turned and shifted, not stretched, so that it lies on the run's as well as it can: least squares
-    over pairs at equal times (Kabsch's method in the plane).
+    """The measured path turned and shifted, not stretched, so that it lies on the run's as well as it can.
+
+    Least squares over pairs at equal times (Kabsch's method in the plane).
 
     Raises ComparisonError where there are fewer than two such pairs, or no path.
     """
@@ -94,6 +95,9 @@ def _rows(text: str, file: Path, faults: list[Problem]) -> list[tuple[int, list[
 def _columns(line: int, cells: list[str], file: Path, faults: list[Problem]) -> list[tuple[str, Unit]]:
     """Name and unit of each column."""
     columns: list[tuple[str, Unit]] = []
+    if any(";" in cell for cell in cells):
+        faults.append(Problem("", f"header has semicolons; separate with commas, as {_EXAMPLE}", str(file), line))
+        return columns
 
     def wrong(message: str) -> None:
         faults.append(Problem("", message, str(file), line))
@@ -102,8 +106,7 @@ def _columns(line: int, cells: list[str], file: Path, faults: list[Problem]) -> 
         match = _HEADER.fullmatch(cell)
         name = match.group(1) if match else cell.strip()
         if match is None or name not in KNOWN:
-            hint = "separate with commas; " if ";" in "".join(cells) else did_you_mean(name, KNOWN)
-            wrong(f"header {shown(cell)} is not known; {hint}known: {', '.join(KNOWN)}")
+            wrong(f"header {shown(cell)} is not known; {did_you_mean(name, KNOWN)}known: {', '.join(KNOWN)}")
             continue
         if name in dict(columns):
             wrong(f"header {shown(name)} stands there twice")
