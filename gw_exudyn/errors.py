@@ -80,6 +80,12 @@ class SolverError(GwError):
     exit_code = 4
 
 
+class SweepError(GwError):
+    """A sweep is done, and some of its points failed."""
+
+    exit_code = 5
+
+
 class ComparisonError(GwError):
     """A comparison came out beyond its tolerance."""
 

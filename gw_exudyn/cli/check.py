@@ -112,6 +112,8 @@ def _bore(scenario: Scenario) -> str:
     bore = scenario.catheter.bore
     if bore is None:
         return "no tube: only the drive holds the wire"
+    if scenario.catheter.is_sleeve:
+        return "a sleeve without play or friction"
     inner, play = (format_quantity(float(f"{width:.4g}"), "mm") for width in (bore, bore - scenario.wire.diameter))
     return f"bore {inner}, {play} wider than the wire"
 

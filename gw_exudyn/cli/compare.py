@@ -15,14 +15,17 @@ from gw_exudyn.errors import ComparisonError, UnitError, UsageError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from gw_exudyn.comparison import Difference, Norm
+    from gw_exudyn.comparison import Course, Difference, Norm
     from gw_exudyn.result import Result
 
 
 @click.command(
     short_help="Set two runs against each other: overlay, differences, norms.",
-    help="""Set run B against run A (run folders): norms of the difference at equal times, what differs in their
+    help="""Set B against run A (a run folder): norms of the difference at equal times, what differs in their
     scenarios, and a figure of both, `compare-A-B`, beside the first run folder.
+
+    B is another run folder, or a CSV file of measured values: a column `time [s]`, and `tip_x [mm]` with `tip_y [mm]`,
+    `push_force [mN]` or other quantities of series.csv, at any rate; an empty cell is a gap.
 
     Exit code 6 where a norm is beyond its --tolerance.""",
 )
@@ -35,25 +38,27 @@ if TYPE_CHECKING:
     metavar="NORM=VALUE",
     help="Largest value that a norm may have, as tip_max='0.1 mm' or push_force_rms='1 mN'. May be repeated.",
 )
+@click.option("--align", is_flag=True, help="Turn and shift a measured path onto the run's before comparing.")
 @click.option("--out", metavar="DIR", help="The folder for the figure.")
 @click.option("--no-figure", is_flag=True, help="Draw no figure.")
 @options.as_json
 def command(
-    first: str, second: str, tolerances: tuple[str, ...], out: str | None, no_figure: bool, as_json: bool
+    first: str, second: str, tolerances: tuple[str, ...], align: bool, out: str | None, no_figure: bool, as_json: bool
 ) -> int:
     """Read both, compare, draw, and tell."""
-    from gw_exudyn.comparison import compare, course_of, differences
+    from gw_exudyn.comparison import Course, compare, course_of, differences
     from gw_exudyn.storage import read_run
 
-    folders = [run_folder(given) for given in (first, second)]
-    runs = [read_run(folder) for folder in folders]
-    norms = compare(course_of(runs[0]), course_of(runs[1]))
+    folder = run_folder(first)
+    run = read_run(folder)
+    other = _other(second, run, align)
+    norms = compare(course_of(run), other if isinstance(other, Course) else course_of(other))
     limits = _limits(tolerances, norms)
-    changed = differences(runs[0].scenario.to_dict(), runs[1].scenario.to_dict())
-    files = [] if no_figure else _drawn(runs[0], runs[1], Path(out) if out else folders[0].absolute().parent)
-    for run in runs:
-        if not run.status.status.trusted:
-            tell(f"{run.scenario.name}: {run.status.sentence()}")
+    changed = None if isinstance(other, Course) else differences(run.scenario.to_dict(), other.scenario.to_dict())
+    files = [] if no_figure else _drawn(run, other, Path(out) if out else folder.absolute().parent)
+    for one in (run, other):
+        if not isinstance(one, Course) and not one.status.status.trusted:
+            tell(f"{one.scenario.name}: {one.status.sentence()}")
     beyond = {name: limit for name, limit in limits.items() if not norms[name].value <= limit}
     if as_json:
         _put_json(norms, limits, changed, files)
@@ -62,6 +67,22 @@ def command(
     if beyond:
         raise ComparisonError("\n".join(_beyond(name, norms[name], limit) for name, limit in beyond.items()))
     return 0
+
+
+def _other(given: str, run: Result, align: bool) -> Result | Course:
+    """What the run is compared with: another run, or a measured course."""
+    from gw_exudyn.comparison import course_of
+    from gw_exudyn.measured import aligned, read_measured
+    from gw_exudyn.storage import read_run
+    from gw_exudyn.storage.series import SERIES
+
+    path = Path(given)
+    if path.suffix.lower() == ".csv" and path.name != SERIES:
+        measured = read_measured(path)
+        return aligned(measured, course_of(run)) if align else measured
+    if align:
+        raise UsageError("--align turns a measured path; two runs lie in the same frame and are compared as they are")
+    return read_run(run_folder(given))
 
 
 def _limits(tolerances: tuple[str, ...], norms: Mapping[str, Norm]) -> dict[str, float]:
@@ -94,15 +115,17 @@ def _is_plain(text: str) -> bool:
     return True
 
 
-def _drawn(first: Result, second: Result, folder: Path) -> list[Path]:
+def _drawn(first: Result, second: Result | Course, folder: Path) -> list[Path]:
+    from gw_exudyn.comparison import Course
     from gw_exudyn.plots import plot_comparison, save_figure
 
-    names = "-".join(dict.fromkeys(run.scenario.name for run in (first, second)))[:120]
+    other = second.name if isinstance(second, Course) else second.scenario.name
+    names = "-".join(dict.fromkeys((first.scenario.name, other)))[:120]
     return save_figure(plot_comparison(first, second), folder / f"compare-{names}")
 
 
 def _put_json(
-    norms: Mapping[str, Norm], limits: Mapping[str, float], changed: list[Difference], files: list[Path]
+    norms: Mapping[str, Norm], limits: Mapping[str, float], changed: list[Difference] | None, files: list[Path]
 ) -> None:
     put_json(
         {
@@ -116,18 +139,20 @@ def _put_json(
                 }
                 for name, norm in norms.items()
             },
-            "scenarios": {one.path: [one.first, one.second] for one in changed},
+            "scenarios": None if changed is None else {one.path: [one.first, one.second] for one in changed},
             "figures": [str(short(file)) for file in files],
         }
     )
 
 
-def _put_tables(norms: Mapping[str, Norm], changed: list[Difference], files: list[Path]) -> None:
+def _put_tables(norms: Mapping[str, Norm], changed: list[Difference] | None, files: list[Path]) -> None:
     from gw_exudyn.cli.numbers import number_text
 
     put_table([(name, number_text(name, norm.value, norm.unit), norm.meaning) for name, norm in norms.items()], [1])
     put("")
-    if changed:
+    if changed is None:
+        put("B is measured: pairs are taken at equal time from the start, places as they are in the file")
+    elif changed:
         put_table([("differs", "A", "B"), *((one.path, _text(one.first), _text(one.second)) for one in changed)])
     else:
         put("the scenarios are the same")

@@ -16,7 +16,20 @@ from gw_exudyn.cli.outcome import exit_code_of
 COMMANDS: Mapping[str, str] = MappingProxyType(
     {
         name: f"gw_exudyn.cli.{name}"
-        for name in ("run", "check", "plot", "animate", "compare", "report", "fmu", "verify", "info", "list", "schema")
+        for name in (
+            "run",
+            "sweep",
+            "check",
+            "plot",
+            "animate",
+            "compare",
+            "report",
+            "fmu",
+            "verify",
+            "info",
+            "list",
+            "schema",
+        )
     }
 )
 """Name of each command and the module that holds it as `command`, in the order of the help."""
@@ -51,7 +64,8 @@ class CommandGroup(click.Group):
     cls=CommandGroup,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
     epilog="Exit codes: 0 done, 2 wrong use, 3 bad scenario, 4 solver failed or run not to be trusted, "
-    "6 comparison beyond its tolerance, 7 trouble with files or the system, 130 interrupted.",
+    "5 sweep with failed points, 6 comparison beyond its tolerance, 7 trouble with files or the system, "
+    "130 interrupted.",
 )
 @click.version_option(__version__, prog_name="gw-exudyn", message="%(prog)s %(version)s")
 def gw_exudyn() -> None:

@@ -61,7 +61,7 @@ class Model:
     def travel_range(self) -> tuple[float, float]:
         """Travel, m, between which the proximal end stays in the catheter, and the catheter's walls reach; a wire may
         be inserted whole, give or take a rounding error. Without a tube there is no end."""
-        if not self.tube.walled:
+        if self.scenario.catheter.bore is None:
             return -math.inf, math.inf
         return self.wire.length - self.tube.length, self.wire.length * (1 + 1e-12)
 
@@ -109,7 +109,7 @@ class Model:
             "vessel.branches": list(scenario.vessel.branch_names),
             "vessel.out_of_plane": getattr(scenario.vessel, "out_of_plane", None),
             "vessel.width_at_exit": self.around.width,
-            "catheter.bore": scenario.catheter.bore,
+            "catheter.bore": None if scenario.catheter.bore is None else self.tube.bore,
             "contact.wall_stiffness": self.law.stiffness,
             "contact.wall_damping": self.law.damping * SINKING * self.wire.radius,
             "contact.tangential_stiffness": self.law.tangential_stiffness,
@@ -131,7 +131,7 @@ def build(scenario: Scenario) -> Model:
     outline = Outline(frame.points_in(plane.points), plane.open_edges)
     pulled_back = max(0.0, -drive.extremes()[0]) if isinstance(drive, Drive) else 0.0
     bore = scenario.catheter.bore
-    tube = Tube(bore or scenario.wire.diameter, 2 * wire.length + pulled_back, walled=bore is not None)
+    tube = Tube(bore or scenario.wire.diameter, 2 * wire.length + pulled_back, walled=bool(bore))
     loads = build_loads(scenario, wire, frame)
     check(scenario, outline, tube, drive, loads.discs)
     around = surroundings(outline, bore_or_more(scenario))

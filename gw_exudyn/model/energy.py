@@ -120,14 +120,14 @@ def advanced(
     work = 0.5 * (old.push + new.push) * travelled
     load_work = 0.5 * float((old.loads.effort + new.loads.effort) @ (new.loads.place - old.loads.place))
     applied = contact.force + new.loads.force
-    in_tip = new.loads.elastic - old.loads.elastic
+    in_loads = new.loads.elastic - old.loads.elastic
     # Work with the forces at the step's end, less what each force really stored or took.
     numerical = (
         0.5 * (old.push - new.push) * travelled
-        + float((wire.joint_stiffness * bend) @ turned) - (new.elastic - old.elastic - in_tip)
+        + float((wire.joint_stiffness * bend) @ turned) - (new.elastic - old.elastic - in_loads)
         + float(resisted @ turned) - damping
         + float((inertia * moved).sum()) - (new.kinetic - old.kinetic)
-        - float((applied * moved).sum()) + load_work - in_tip - (wall - wall_before) - friction - wall_damping
+        - float((applied * moved).sum()) + load_work - in_loads - (wall - wall_before) - friction - wall_damping
         - _finite_turns(wire, old, new, inertia - applied)
     )  # fmt: skip
     stored = new.elastic + wall + new.kinetic

@@ -100,7 +100,8 @@ def estimated_force(scenario: Scenario, around: Surroundings) -> float:
     width = max(around.width, 2 * wire.diameter)
     stiffness = mean_stiffness(wire.effective_stiffness, 5 * width)
     bend = stiffness / (2 * width**2)
-    head_on = 0.0 if math.isinf(around.ahead) else 20.2 * stiffness / (around.ahead + 10 * bore) ** 2
+    inside = 10 * (wire.diameter if scenario.catheter.is_sleeve else bore)
+    head_on = 0.0 if math.isinf(around.ahead) else 20.2 * stiffness / (around.ahead + inside) ** 2
     curvature = _rest_curvature(wire)
     chord = math.sqrt(8 * (bore - wire.diameter) / curvature) if curvature > 0 else math.inf
     return max(bend, head_on, 4 * stiffness * curvature / chord)
@@ -141,7 +142,7 @@ def _snug(scenario: Scenario, around: Surroundings) -> list[str]:
 
 
 def bore_or_more(scenario: Scenario) -> float:
-    """The catheter's bore, m; ten diameters of the wire where there is none."""
+    """The catheter's bore, m; ten diameters of the wire where no walls of a catheter limit it."""
     return scenario.catheter.bore or 10 * scenario.wire.diameter
 
 

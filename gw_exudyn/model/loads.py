@@ -1,4 +1,4 @@
-"""Loads on the wire besides contact with walls: at its tip, and from discs."""
+"""Loads on the wire besides contact with walls: at its tip, from discs, and from a sleeve."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from gw_exudyn.model.discs import Disc, Discs
 from gw_exudyn.model.frame import Frame
 from gw_exudyn.model.kernel import Motion
+from gw_exudyn.model.sleeve import Sleeve
 from gw_exudyn.model.wire import Wire, compliance, rest_angles
 
 if TYPE_CHECKING:
@@ -33,8 +34,8 @@ class LoadsInstant:
     """What the energy balance needs of the loads at an instant.
 
     force : (n, 3), N and N m about the centres; (1, 3) zeros where there are no loads. effort, place : (e,), loads that
-        do work, and what they do it on (N and m, N m and rad). elastic : J, in what holds the tip. stored : J, in the
-        springs of the discs.
+        do work, and what they do it on (N and m, N m and rad). elastic : J, in what holds the tip and of a sleeve.
+        stored : J, in the springs of the discs.
     """
 
     force: Floats = field(default_factory=lambda: np.zeros((1, 3)))
@@ -70,10 +71,11 @@ class TipLoad:
 
 @dataclass(frozen=True)
 class LoadSet:
-    """What loads a wire."""
+    """What loads a wire. sleeve : the catheter is one."""
 
     tip: TipLoad
     discs: tuple[Disc, ...]
+    sleeve: bool = False
 
 
 class Loads:
@@ -86,10 +88,11 @@ class Loads:
     def __init__(self, wire: Wire, loads: LoadSet) -> None:
         self.tip = loads.tip
         self.discs = Discs(wire, loads.discs)
+        self.sleeve = Sleeve(wire) if loads.sleeve else None
         self._wire, self._half = wire, wire.lengths / 2
         self.force, self.tangent = np.zeros((wire.segments, 3)), np.zeros((wire.segments, 3, 3))
         self.time = 0.0
-        self.present = bool(loads.discs) or bool(self.tip.held.any()) or self.loads_tip
+        self.present = bool(loads.discs) or bool(self.tip.held.any()) or self.loads_tip or loads.sleeve
 
     @property
     def loads_tip(self) -> bool:
@@ -109,6 +112,8 @@ class Loads:
         self.tangent[:] = 0.0
         self._add_tip(motion)
         self.discs.add(motion, self.time, self.force, self.tangent)
+        if self.sleeve is not None:
+            self.sleeve.add(motion, self.force, self.tangent)
 
     def instant(self, motion: Motion) -> LoadsInstant:
         """At the place and time of the last `evaluate`."""
@@ -122,11 +127,12 @@ class Loads:
                 effort += list(-self.discs.force_on(number))
                 place += list(disc.centre(self.time))
         bend = float(motion.q[-1, 2]) + self.tip.rest
+        in_tip = 0.5 * self.tip.clamp * bend**2 + 0.5 * float(self.tip.held @ self._astray(motion) ** 2)
         return LoadsInstant(
             force=self.force.copy(),
             effort=np.array(effort),
             place=np.array(place),
-            elastic=0.5 * self.tip.clamp * bend**2 + 0.5 * float(self.tip.held @ self._astray(motion) ** 2),
+            elastic=in_tip + (0.0 if self.sleeve is None else self.sleeve.energy),
             stored=self.discs.energy,
         )
 
@@ -173,7 +179,7 @@ class Loads:
 
 def build_loads(scenario: Scenario, wire: Wire, frame: Frame) -> LoadSet:
     """The loads of a scenario, in the catheter's frame."""
-    return LoadSet(_tip_load(scenario, wire, frame), _discs(scenario, frame))
+    return LoadSet(_tip_load(scenario, wire, frame), _discs(scenario, frame), scenario.catheter.is_sleeve)
 
 
 def _tip_load(scenario: Scenario, wire: Wire, frame: Frame) -> TipLoad:

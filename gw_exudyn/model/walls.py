@@ -78,7 +78,7 @@ class _Polyline:
 class Tube:
     """The catheter in its own frame: the axis along +x, the exit at the origin. bore, length : m.
 
-    walled : it has walls to touch; one that is not there has none.
+    walled : it has walls to touch; a sleeve has none, nor has one that is not there.
     """
 
     bore: float

@@ -31,6 +31,9 @@ from gw_exudyn.scenario.words import did_you_mean, nearest, plural, shown
 
 Loc = tuple[str | int, ...]
 
+IN_SI = "in SI: "
+"""What the JSON schema's description of a bare number begins with; its unit follows."""
+
 KIND_TAG = "kind="
 """Pydantic puts the tag of a union into the place of an error; ours begin with this, to be taken out again."""
 
@@ -110,7 +113,7 @@ class Quantity(Kind):
 
     unit : its SI unit. low, high : the plausible, in SI, both allowed. usual : the unit in which limits are told.
     also : other SI units whose dimension is taken. auto : the word `auto` stands for None. optional : so does nothing
-        at all. off : the word `off` stands for infinite.
+        at all. off : the word `off` stands for infinite. zero : a word that stands for 0, which no number may.
     """
 
     unit: str
@@ -121,11 +124,13 @@ class Quantity(Kind):
     auto: bool = False
     optional: bool = False
     off: bool = False
+    zero: str = ""
 
     @property
     def words(self) -> dict[str, float | None]:
         """The words that may stand for a value, and the value of each."""
-        return ({"auto": None} if self.auto else {}) | ({"off": math.inf} if self.off else {})
+        words: dict[str, float | None] = {"auto": None} if self.auto else {}
+        return words | ({"off": math.inf} if self.off else {}) | ({self.zero: 0.0} if self.zero else {})
 
     def word_for(self, value: float | None) -> str:
         """The word that stands for a value; empty where none does."""
@@ -176,7 +181,7 @@ class Quantity(Kind):
         """A number in SI within its limits, or text with a unit."""
         units = ", ".join(units_that_fit(self.unit))
         options: list[dict[str, Any]] = [
-            {"type": "number", "minimum": self.low, "maximum": self.high, "description": f"in SI: {self.unit}"},
+            {"type": "number", "minimum": self.low, "maximum": self.high, "description": f"{IN_SI}{self.unit}"},
             {"type": "string", "pattern": r"^\s*[+-]?[0-9.]", "description": f"number, space, unit: {units}"},
         ]
         options += [{"const": word} for word in self.words]

@@ -39,7 +39,7 @@ BRANCH_PLACE = Quantity("m", 0.0, 5.0, "mm", optional=True)
 BEND_RADIUS = Quantity("m", 0.0, 5.0, "mm")
 DRAWING_LENGTH = Quantity("m", 1e-3, 10.0, "mm", optional=True)
 FILLET = Quantity("m", 0.0, 0.1, "mm", optional=True)
-BORE = Quantity("m", 0.05e-3, 50e-3, "mm", optional=True)
+BORE = Quantity("m", 0.05e-3, 50e-3, "mm", optional=True, zero="sleeve")
 
 MOMENT = Quantity("N*m", -1e3, 1e3, "N*mm")
 DISC_RADIUS = Quantity("m", 1e-6, 1.0, "mm")

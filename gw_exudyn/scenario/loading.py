@@ -39,7 +39,7 @@ def load_scenario(path_or_name: str | os.PathLike[str], overrides: Overrides = (
     """
     path = resolve(path_or_name)
     source = read_yaml(path)
-    source.data.setdefault("name", _name_from(path))
+    source.data.setdefault("name", name_from(path))
     return _checked(source, overrides, path.parent)
 
 
@@ -52,6 +52,14 @@ def scenario_from_dict(
     if not isinstance(data, Mapping):
         raise ScenarioError(Problem("", f"a scenario is a mapping, not {type(data).__name__}"))
     return _checked(YamlSource(copy.deepcopy(dict(data))), overrides, Path(folder))
+
+
+def scenario_from_source(source: YamlSource, overrides: Overrides, folder: Path) -> Scenario:
+    """A scenario from a file that was read before, which stays as it is: for many scenarios that differ in their
+    overrides. Relative files are relative to `folder`. Raises ScenarioError.
+    """
+    mine = YamlSource(copy.deepcopy(source.data), dict(source.places), list(source.problems))
+    return _checked(mine, overrides, folder)
 
 
 def _checked(source: YamlSource, overrides: Overrides, folder: Path) -> Scenario:
@@ -76,6 +84,6 @@ def _validated(source: YamlSource, folder: Path) -> Scenario:
     return scenario
 
 
-def _name_from(path: Path) -> str:
+def name_from(path: Path) -> str:
     """A name that a folder may have, from the name of the file."""
     return re.sub(r"[^\w.+-]", "-", path.stem).lstrip(".+-")[:100] or "scenario"

@@ -15,6 +15,9 @@ from gw_exudyn.scenario.yaml_source import YamlSource, parse_value
 Overrides = Mapping[str, Any] | Sequence[str]
 """Dotted paths with their values, or texts `path=value` whose value is read as YAML."""
 
+OVERRIDE = "override "
+"""What the place of an override of a mapping begins with; its path follows."""
+
 _DEEPEST = 20
 
 
@@ -41,14 +44,17 @@ def _read(overrides: Overrides) -> list[tuple[str, str, Callable[[], Any]]]:
         return [_given(str(path), value) for path, value in overrides.items()]
     if isinstance(overrides, str):
         overrides = [overrides]
-    return [_split(text) for text in overrides]
+    return [split_override(text) for text in overrides]
 
 
 def _given(path: str, value: Any) -> tuple[str, str, Callable[[], Any]]:
-    return path, f"override {path_text([path])}", lambda: copy.deepcopy(value)
+    return path, f"{OVERRIDE}{path_text([path])}", lambda: copy.deepcopy(value)
 
 
-def _split(text: str) -> tuple[str, str, Callable[[], Any]]:
+def split_override(text: str) -> tuple[str, str, Callable[[], Any]]:
+    """Path, place for messages, and a function that reads the value, of a text `path=value`. Raises UsageError for
+    another text; the function raises ScenarioError.
+    """
     path, equals, value = text.partition("=")
     path = path.strip()
     place = f"--set {path_text([path])}"

@@ -48,7 +48,8 @@ class CatheterSpec(Section):
     """The straight, fixed tube that holds the proximal part of the wire; the tip starts at its exit.
 
     exit : (x, y), m. direction : rad, of the axis, pointing into the vessel, from +x to the left. bore : m, inner
-        diameter; None where there is no tube and only the drive holds the wire.
+        diameter; 0 (`sleeve`) for a frictionless one without play; None where there is no tube and only the drive holds
+        the wire.
     friction_coefficient : None takes the contact's.
     """
 
@@ -62,12 +63,25 @@ class CatheterSpec(Section):
     )
     bore: Annotated[float | None, BORE] = Field(
         default=None,
-        description="inner diameter; may be left out where the vessel is none: there is no tube then",
+        description="inner diameter; sleeve: no play and no friction, the wire inside is straight; may be left out "
+        "where the vessel is none: there is no tube then",
         examples=["1.2 mm"],
     )
     friction_coefficient: Annotated[float | None, FRICTION_OR_NONE] = Field(
         default=None, description="friction in it; the contact's if not given"
     )
+
+    @property
+    def is_sleeve(self) -> bool:
+        """It holds the wire without play and without friction."""
+        return self.bore == 0
+
+    @field_validator("friction_coefficient", mode="after")
+    @classmethod
+    def _none_in_a_sleeve(cls, friction: float | None, info: ValidationInfo) -> float | None:
+        if friction and info.data.get("bore") == 0:
+            raise wrong("a sleeve has no friction; leave it out, or give a bore in which the wire has some play")
+        return friction
 
 
 class ContactSpec(Section):
@@ -178,6 +192,17 @@ class Scenario(Section):
             faults.add(("bore",), wrong("is missing: inner diameter; for example bore: 1.2 mm", missing=True))
             faults.raise_if_any()
         return catheter
+
+    @field_validator("drive", mode="after")
+    @classmethod
+    def _held_by_one(cls, drive: Drive, info: ValidationInfo) -> Drive:
+        catheter = info.data.get("catheter")
+        if catheter is not None and catheter.is_sleeve and drive.hold != "clamped":
+            faults = Faults()
+            text = f"an end that is {drive.hold} cannot be in a sleeve, which holds its direction; "
+            faults.add(("hold",), f"{text}leave it out, or give catheter.bore as a length")
+            faults.raise_if_any()
+        return drive
 
     @field_validator("tip", mode="after")
     @classmethod

@@ -63,3 +63,26 @@ def test_a_tolerance_that_is_none_is_wrong_use(gw, runs, given, sentence):
     outcome = gw("compare", runs[0], runs[0], "--tolerance", given, "--no-figure")
     assert outcome.code == 2
     assert sentence in outcome.err
+
+
+def test_a_measured_path_and_force(gw, coarse):
+    rows = Path(coarse[0], "series.csv").read_text(encoding="utf-8").splitlines()
+    head = rows[0].split(",")
+    columns = [head.index(name) for name in ("time [s]", "tip_x [m]", "tip_y [m]", "push_force [N]")]
+    lines = [",".join(row.split(",")[column] for column in columns) for row in rows[::3]]
+    Path("camera.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    outcome = gw("compare", coarse[0], "camera.csv", "--tolerance", "tip_rms=0.2 mm", "--json")
+    content = json.loads(outcome.out)
+    assert outcome.code == 0
+    assert content["scenarios"] is None
+    assert {name.rpartition("_")[0] for name in content["norms"]} == {"tip", "tip_nearest", "push_force"}
+    assert Path(content["figures"][0]).name == "compare-corner90-universal-camera.png"
+    assert gw("compare", coarse[0], "camera.csv", "--align", "--no-figure").code == 0
+
+
+def test_a_bad_measured_file_is_told_with_its_line(gw, runs):
+    Path("bad.csv").write_text("time [s],push_force [N]\n0,1\n1,x\n", encoding="utf-8")
+    outcome = gw("compare", runs[0], "bad.csv")
+    assert outcome.code == 3
+    assert "bad.csv:3: push_force: 'x' is no number" in outcome.err
+    assert gw("compare", *runs, "--align").code == 2

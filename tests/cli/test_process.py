@@ -14,7 +14,7 @@ import pytest
 
 import gw_exudyn
 
-HEAVY = ("pydantic", "xarray", "matplotlib", "exudyn", "shapely", "numpy", "scipy", "h5netcdf", "rich", "yaml")
+HEAVY = ("pydantic", "xarray", "matplotlib", "exudyn", "shapely", "numpy", "scipy", "h5netcdf", "rich", "yaml", "dask")
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(Path(gw_exudyn.__file__).parents[1])}
 
 
@@ -43,6 +43,7 @@ def gw(*arguments: str, stdout=subprocess.PIPE, **environment: str) -> subproces
         "import gw_exudyn; gw_exudyn.__version__; dir(gw_exudyn)",
         "from gw_exudyn.cli import main; main(['--help'])",
         "from gw_exudyn.cli import main; main(['run', '--help'])",
+        "from gw_exudyn.cli import main; main(['sweep', '--help'])",
         "from gw_exudyn.cli import main; main(['--version'])",
     ],
 )
@@ -62,10 +63,10 @@ def test_version_and_help_go_to_stdout():
     assert (done.returncode, done.stdout, done.stderr) == (0, f"gw-exudyn {gw_exudyn.__version__}\n", "")
     done = gw("--help")
     assert done.returncode == 0
-    assert all(command in done.stdout for command in ("run", "check", "schema", "info", "plot"))
+    assert all(command in done.stdout for command in ("run", "sweep", "check", "schema", "info", "plot"))
 
 
-@pytest.mark.parametrize("command", ["run", "check", "schema", "info", "plot"])
+@pytest.mark.parametrize("command", ["run", "sweep", "check", "schema", "info", "plot"])
 def test_every_command_has_its_help(command):
     done = gw(command, "--help")
     assert done.returncode == 0

@@ -21,6 +21,7 @@ MAY_IMPORT = {
     "result": {"errors", "quantities", "scenario"},
     "metrics": ABOVE_RESULT,
     "comparison": ABOVE_RESULT,
+    "measured": ABOVE_RESULT | {"comparison"},
     "plots": ABOVE_RESULT | {"metrics", "storage", "comparison"},
     "report": ABOVE_RESULT | {"metrics", "comparison", "plots", "storage"},
     "storage": ABOVE_RESULT | {"metrics", "plots"},

@@ -1,0 +1,153 @@
+"""`gw-exudyn sweep`: a scenario over a grid, a list or a sample of parameters, in parallel."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from gw_exudyn.cli import options
+from gw_exudyn.cli.console import put, put_json, put_table, tell
+from gw_exudyn.errors import Interrupted, SweepError
+
+if TYPE_CHECKING:
+    from gw_exudyn.sweep.run import Options, Plan, Summary
+    from gw_exudyn.sweep.study import Study
+
+SWEEPS = Path("results", "sweeps")
+"""Where the folders of sweeps go under the current folder."""
+
+_FAILURES_TOLD = 10
+
+
+@click.command(
+    short_help="Run a scenario over a grid, a list or a sample of parameters.",
+    help="""Run the points of a STUDY (a YAML file, or the name of a shipped one) in parallel, and write their table
+    sweep.csv, their data set sweep.nc and figures.
+
+    Points that are done are not run again: after a stop of whatever kind, the same command goes on. The name of the
+    folder is written to stdout. Ctrl-C stops the sweep and keeps what is done.""",
+)
+@click.argument("study", metavar="STUDY")
+@options.overrides
+@click.option("--out", metavar="DIR", help=f"The folder of the sweep. Without: {SWEEPS.as_posix()}/NAME.")
+@click.option("--jobs", "-j", type=click.IntRange(1, 1024), metavar="N", help="Worker processes. Without: one a core.")
+@click.option("--scheduler", metavar="ADDRESS", help="Use the workers of this dask scheduler, as tcp://host:8786.")
+@click.option(
+    "--timeout",
+    type=click.FloatRange(0.0, min_open=True),
+    metavar="SECONDS",
+    help="Give a point up that takes longer; it is in the table as timed_out.",
+)
+@click.option("--keep-runs", is_flag=True, help="Keep the whole run folder of every point (run.nc).")
+@click.option("--retry-failed", is_flag=True, help="Run points again that failed.")
+@click.option("--fresh", is_flag=True, help="Forget what is done and run all points.")
+@click.option("--dry-run", is_flag=True, help="Show the points and what they will cost; run none.")
+@click.option("--no-figures", is_flag=True, help="Leave out the figures, and the best and the worst run.")
+@options.as_json
+@click.option("--quiet", "-q", is_flag=True, help="No progress and no summary; only what goes wrong is told.")
+def command(
+    study: str,
+    overrides: tuple[str, ...],
+    out: str | None,
+    jobs: int | None,
+    scheduler: str | None,
+    timeout: float | None,
+    keep_runs: bool,
+    retry_failed: bool,
+    fresh: bool,
+    dry_run: bool,
+    no_figures: bool,
+    as_json: bool,
+    quiet: bool,
+) -> int:
+    """Check all points, run what is missing, and say what came out."""
+    from gw_exudyn.cli.sweep_progress import checking, cores, running
+    from gw_exudyn.engine.library import exudyn
+    from gw_exudyn.sweep.run import Options, make_plan, run_sweep
+    from gw_exudyn.sweep.study import load_study
+
+    loaded = load_study(study, overrides)
+    folder = Path(out) if out else SWEEPS / loaded.name
+    chosen = Options(
+        jobs=jobs or cores(),
+        scheduler=scheduler,
+        timeout=timeout,
+        keep_runs=keep_runs,
+        retry_failed=retry_failed,
+        fresh=fresh,
+        figures=not no_figures,
+        command=_command_line(study, overrides, out, keep_runs),
+    )
+    exudyn()
+    with checking(len(loaded), quiet) as look:
+        plan = make_plan(loaded, folder, chosen, look)
+    if dry_run:
+        return _show_plan(loaded, plan, folder, chosen, as_json)
+    with running(loaded.name, chosen, quiet) as (report, stop):
+        summary = run_sweep(loaded, folder, chosen, plan=plan, report=report, should_stop=stop.should_stop)
+    _tell(summary, quiet)
+    if as_json:
+        put_json(_as_json(summary))
+    else:
+        put(str(folder))
+    if summary.interrupted:
+        return Interrupted.exit_code
+    return SweepError.exit_code if summary.failed else 0
+
+
+def _command_line(study: str, overrides: tuple[str, ...], out: str | None, keep_runs: bool) -> str:
+    words = ["gw-exudyn", "sweep", study, *(word for text in overrides for word in ("--set", text))]
+    words += ["--keep-runs"] if keep_runs else []
+    return shlex.join([*words, "--out", out] if out else words)
+
+
+def _show_plan(study: Study, plan: Plan, folder: Path, chosen: Options, as_json: bool) -> int:
+    from gw_exudyn.sweep.estimate import estimate
+
+    guess = estimate(study, plan, folder, chosen)
+    if as_json:
+        put_json(
+            {
+                "points": len(plan.ids),
+                "unique": len(plan.first),
+                "missing": len(plan.missing),
+                "estimate": guess.to_dict(),
+                "list": [{"point": i, "id": found, **study.design.labels(i)} for i, found in enumerate(plan.ids)],
+            }
+        )
+        return 0
+    missing = set(plan.missing)
+    rows = [("point", "id", *(axis.path for axis in study.design.axes), "")]
+    for point, found in enumerate(plan.ids):
+        labels = [label if isinstance(label, str) else f"{label:.6g}" for label in study.design.labels(point).values()]
+        state = "to run" if point in missing else "done" if plan.first[found] == point else f"as {plan.first[found]}"
+        rows.append((str(point), found, *labels, state))
+    put_table(rows)
+    for line in guess.sentences():
+        tell(line)
+    return 0
+
+
+def _tell(summary: Summary, quiet: bool) -> None:
+    for failure in summary.failures[:_FAILURES_TOLD]:
+        tell(f"point {failure.point} ({failure.id}): {failure.status}: {failure.reason.partition('. ')[0].rstrip('.')}")
+    if summary.failed > _FAILURES_TOLD:
+        tell(f"... and {summary.failed - _FAILURES_TOLD} more failed points; sweep.csv has them all")
+    for note in summary.notes:
+        tell(note)
+    left = summary.unique - summary.completed - summary.failed
+    if summary.interrupted:
+        tell(f"interrupted with {left} points left; the same command goes on")
+    if not quiet:
+        earlier = f", {summary.earlier} of them before" if summary.earlier else ""
+        tell(f"{summary.completed} points completed, {summary.failed} failed{earlier}: {summary.folder}")
+
+
+def _as_json(summary: Summary) -> dict[str, Any]:
+    from dataclasses import asdict
+
+    content = asdict(summary)
+    return {**content, "folder": str(summary.folder), "files": [str(file) for file in summary.files]}

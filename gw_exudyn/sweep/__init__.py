@@ -1,0 +1,26 @@
+"""Sweeps: a scenario over a grid, a list or a sample of parameters, in parallel.
+
+The way of the data: `study` (the file, checked) -> `design` (the points) -> `engine` (dask hands points to workers)
+-> `worker` -> `point_process` (a child that runs one point after the other) -> `folder` (points on disk) -> `table`,
+`dataset`, `figures`, `sensitivity`. Names are loaded when they are first used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from gw_exudyn.sweep.run import Options, Summary, run_sweep
+    from gw_exudyn.sweep.study import Study, load_study
+
+_HOME = {"Options": "run", "Study": "study", "Summary": "run", "load_study": "study", "run_sweep": "run"}
+
+__all__ = ["Options", "Study", "Summary", "load_study", "run_sweep"]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name from its module when it is first asked for."""
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)

@@ -1,0 +1,38 @@
+"""The best and the worst run of a sweep, drawn in the vessel."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gw_exudyn.metrics import metrics
+from gw_exudyn.sweep.plot_scales import metric_words
+from gw_exudyn.sweep.study import Study
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from gw_exudyn.result import Result
+
+
+def plot_extremes(study: Study, runs: Mapping[str, Path]) -> Figure:
+    """Draw the runs side by side as `plot_insertion` does. runs : folders by `best` and `worst`."""
+    from gw_exudyn.plots import plot_insertion
+    from gw_exudyn.storage import read_run
+
+    return plot_insertion([_titled(name, read_run(folder), study) for name, folder in runs.items()])
+
+
+def _titled(name: str, result: Result, study: Study) -> Result:
+    """The result under a name that tells the metric and the parameters."""
+    metric = study.metrics[0]
+    parameters = result.provenance["point"]["parameters"]
+    told = [f"{path.rpartition('.')[2]} {_text(value)}" for path, value in parameters.items()]
+    title = f"{name}: {metric_words(metric, metrics(result)[metric].value)}\n{', '.join(told)}"
+    return dataclasses.replace(result, scenario=result.scenario.model_copy(update={"name": title}))
+
+
+def _text(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value:.4g}"

@@ -1,0 +1,65 @@
+"""Units in which figures of a sweep show parameters and metrics, and colours for values."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+
+import numpy as np
+
+from gw_exudyn.plots.style import axis_label, shown
+from gw_exudyn.quantities import plain
+from gw_exudyn.result import Floats
+from gw_exudyn.sweep.axes import Axis
+from gw_exudyn.sweep.metric_names import metric_table
+
+COLOUR_MAP = "cividis"
+"""Told apart with any colour vision, and in grey."""
+
+# A quantity of each unit, whose display unit serves for parameters and metrics in the same unit.
+_LIKE = MappingProxyType(
+    {
+        "m": "tip_x",
+        "N": "push_force",
+        "J": "insertion_work",
+        "rad": "tip_angle",
+        "s": "time",
+        "m/s": "drive_speed",
+        "m s-1": "drive_speed",
+    }
+)
+
+
+def scaled(text: str, unit: str, values: Floats) -> tuple[str, Floats]:
+    """Label with unit, and the values in it, of something in SI."""
+    like = _LIKE.get(unit)
+    if like is None:
+        return axis_label(text, unit), values
+    name, factor = shown(like, values)
+    return axis_label(text, name), values * factor
+
+
+def metric_scaled(name: str, values: Floats) -> tuple[str, Floats]:
+    """Label and values of a metric as an axis shows them."""
+    return scaled(name.replace("_", " "), metric_table()[name].unit, values)
+
+
+def metric_words(name: str, value: float) -> str:
+    """A metric and its value in words: `push force max 20.7 mN`."""
+    unit = metric_table()[name].unit
+    shown_unit, factor = shown(_LIKE[unit], np.array([value])) if unit in _LIKE else (unit, 1.0)
+    number = f"{value * factor:.3g}"
+    return f"{name.replace('_', ' ')} {number if shown_unit == '1' else f'{number} {plain(shown_unit)}'}"
+
+
+def axis_name(axis: Axis) -> str:
+    """The parameter's path as words."""
+    return axis.path.replace("_", " ").replace(".", ": ")
+
+
+def axis_scaled(axis: Axis, labels: list[float | str]) -> tuple[str, Floats, list[str]]:
+    """Label, numbers and words of a parameter's coordinates; words are numbered in the order of their first sight."""
+    if axis.unit is not None:
+        text, values = scaled(axis_name(axis), axis.unit, np.array(labels, dtype=float))
+        return text, values, [f"{value:.3g}" for value in values]
+    words = list(dict.fromkeys([str(label) for label in axis.labels] or [str(label) for label in labels]))
+    return axis_name(axis), np.array([float(words.index(str(label))) for label in labels]), [str(x) for x in labels]

@@ -1,0 +1,311 @@
+"""A sweep from its study to its folder: which points are missing, running them, and what comes out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from gw_exudyn.errors import ScenarioError
+from gw_exudyn.storage.manifest import MANIFEST, MARKER, to_text
+from gw_exudyn.storage.netcdf import DATA
+from gw_exudyn.sweep.folder import POINTS, SweepFolder, read_point
+from gw_exudyn.sweep.identity import Maker, decisive, this_maker
+from gw_exudyn.sweep.pool import Pool, pool
+from gw_exudyn.sweep.runner import SIMULATION, Outcome, Task
+from gw_exudyn.sweep.study import ProblemList, Study
+
+_FAILURES_TOLD = 1000
+"""Failed points that a summary names; sweep.csv has them all."""
+
+
+@dataclass(frozen=True)
+class Options:
+    """How a sweep is run. jobs, scheduler, timeout, runner : as `pool` takes them. keep_runs : whole run folders.
+    retry_failed : run failed points again. fresh : run all points again. figures : draw. command : what a person types
+    to repeat it.
+    """
+
+    jobs: int = 1
+    scheduler: str | None = None
+    timeout: float | None = None
+    keep_runs: bool = False
+    retry_failed: bool = False
+    fresh: bool = False
+    figures: bool = True
+    command: str = ""
+    runner: str = SIMULATION
+
+
+@dataclass
+class Progress:
+    """How far a sweep is. points : different ones in all. earlier : done before this call. done : in this call, of
+    which failed: gave nothing that can be trusted. threads : of all workers.
+    """
+
+    points: int
+    earlier: int = 0
+    done: int = 0
+    failed: int = 0
+    threads: int = 0
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A point that failed: id, number of its first row in the table, status and reason."""
+
+    id: str
+    point: int
+    status: str
+    reason: str
+
+
+@dataclass
+class Summary:
+    """What a sweep came to. points : rows of the table. unique : different points. earlier : done before this call.
+    run : run in this call. completed, failed : of all that are done. failures : the first thousand. interrupted : it
+    was stopped before its end.
+    """
+
+    folder: Path
+    points: int
+    unique: int
+    earlier: int
+    run: int = 0
+    completed: int = 0
+    failed: int = 0
+    failures: list[Failure] = field(default_factory=list)
+    interrupted: bool = False
+    files: list[Path] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The points of a study by id, and which are there already.
+
+    ids : of every point of the design, in order. first : number of the first point with an id. missing : numbers of the
+    points to run.
+    """
+
+    ids: tuple[str, ...]
+    first: Mapping[str, int]
+    missing: tuple[int, ...]
+    maker: Maker
+
+
+def make_plan(study: Study, folder: Path, options: Options, look: Callable[[int], None] = lambda _: None) -> Plan:
+    """Check all points of a study and find out which are to be run. Changes nothing.
+
+    look : called with the number of points that were checked. Raises ScenarioError with everything that is wrong.
+    """
+    maker, problems = this_maker(options.runner), ProblemList()
+    ids: list[str] = []
+    first: dict[str, int] = {}
+    missing: list[int] = []
+    for point in range(len(study)):
+        look(point)
+        try:
+            scenario = study.scenario(point)
+            found = maker.point_id(scenario.to_dict())
+            ids.append(found)
+            if found in first:
+                continue
+            first[found] = point
+            if not options.fresh and _is_there(folder / POINTS / found, options):
+                continue
+            missing.append(point)
+            _build(study, point, scenario)
+        except ScenarioError as error:
+            problems.add(error.problems)
+            if problems.full:
+                break
+    problems.raise_if_any()
+    return Plan(tuple(ids), first, tuple(missing), maker)
+
+
+def _build(study: Study, point: int, scenario: Any) -> None:
+    """Find out whether a scenario can start. Raises ScenarioError with places in the study file."""
+    from gw_exudyn import model
+
+    try:
+        model.build(scenario)
+    except ScenarioError as error:
+        raise ScenarioError(study.placed(error.problems, point)) from None
+
+
+def _is_there(folder: Path, options: Options) -> bool:
+    content = read_point(folder)
+    if content is None:
+        return False
+    good = content.get("trusted") is True
+    if options.retry_failed and not good:
+        return False
+    return not (options.keep_runs and good and not (folder / DATA).is_file())
+
+
+def run_sweep(
+    study: Study,
+    folder: Path,
+    options: Options | None = None,
+    *,
+    plan: Plan | None = None,
+    report: Callable[[Progress], None] = lambda _: None,
+    should_stop: Callable[[], bool] = lambda: False,
+) -> Summary:
+    """Run what is missing of a study, and write its table, data set and figures.
+
+    plan : of `make_plan`, made here if not given. report : called a few times a second. should_stop : asked as often;
+    True ends the sweep, what is done is kept.
+
+    Raises ScenarioError for points that cannot start, StorageError for the folder or the disk, UsageError for a
+    scheduler that does not answer, SolverError where the workers cannot run anything.
+    """
+    options = options or Options(command=f"gw-exudyn sweep {study.file}")
+    plan = plan or make_plan(study, folder, options)
+    with SweepFolder(folder) as place:
+        # Again under the lock: another sweep may have gone on in between, or a point may have vanished.
+        missing = [
+            point for point in plan.missing if options.fresh or not _is_there(place.point(plan.ids[point]), options)
+        ]
+        place.write_about(_about(study, plan, options))
+        if options.fresh:
+            place.clear()
+        progress = Progress(len(plan.first), earlier=len(plan.first) - len(missing))
+        summary = Summary(folder, len(plan.ids), len(plan.first), progress.earlier)
+        sweep = _Sweep(study, plan, options, place, progress, report, should_stop)
+        summary.interrupted = not sweep.run(missing)
+        summary.run = progress.done
+        from gw_exudyn.sweep.outputs import write_outputs
+
+        write_outputs(study, plan, options, place, summary, sweep.run_whole if not summary.interrupted else None)
+        place.write_about({**_about(study, plan, options), "summary": _counts(summary)})
+    return summary
+
+
+class _Sweep:
+    """The running part of a sweep."""
+
+    def __init__(
+        self,
+        study: Study,
+        plan: Plan,
+        options: Options,
+        place: SweepFolder,
+        progress: Progress,
+        report: Callable[[Progress], None],
+        should_stop: Callable[[], bool],
+    ) -> None:
+        self._study, self._plan, self._options, self._place = study, plan, options, place
+        self._progress, self._report, self._should_stop = progress, report, should_stop
+
+    def run(self, points: list[int]) -> bool:
+        """Run points; False if stopped on the way."""
+        self._report(self._progress)
+        if not points:
+            return True
+        with self._pool() as workers:
+            done: bool = workers.run(self._tasks(points), self._keep, self._should_stop, lambda: self._look(workers))
+        return done
+
+    def run_whole(self, point: int) -> Mapping[str, bytes]:
+        """The files of the whole run folder of a point, run for them alone; none where that did not work out."""
+        from gw_exudyn.sweep.point_process import PointProcess
+
+        process = PointProcess(self._options.runner, self._options.timeout)
+        try:
+            return process.run(next(self._tasks([point], whole=True))).files
+        finally:
+            process.close()
+
+    def _pool(self) -> Any:
+        options = self._options
+        return pool(options.jobs, options.scheduler, options.runner, options.timeout)
+
+    def _look(self, workers: Pool) -> None:
+        self._progress.threads = workers.threads
+        self._report(self._progress)
+
+    def _tasks(self, points: list[int], whole: bool | None = None) -> Iterator[Task]:
+        for point in points:
+            found = self._plan.ids[point]
+            note = {
+                "point": {"id": found, "parameters": self._study.design.labels(point), "code": self._plan.maker.code}
+            }
+            scenario = self._study.scenario(point).to_dict()
+            keep = self._options.keep_runs if whole is None else whole
+            yield Task(found, scenario, note, self._options.command, keep)
+
+    def _keep(self, task: Task, outcome: Outcome) -> None:
+        outcome = self._checked(outcome)
+        files = outcome.files if MANIFEST in outcome.files else {MANIFEST: _failure(task, outcome, self._plan.maker)}
+        self._place.add(task.id, files)
+        self._progress.done += 1
+        self._progress.failed += not outcome.trusted
+
+    def _checked(self, outcome: Outcome) -> Outcome:
+        """The outcome, unless it was made by other software than the point's id says."""
+        if not outcome.versions:
+            return outcome
+        theirs = decisive(outcome.versions)
+        differ = [
+            f"{name} {theirs[name]} there, {version} here"
+            for name, version in self._plan.maker.versions.items()
+            if theirs[name] != version
+        ]
+        if not differ:
+            return outcome
+        return Outcome("error", f"The worker has other software: {'; '.join(differ)}. Install the same on both.")
+
+
+def _failure(task: Task, outcome: Outcome, maker: Maker) -> bytes:
+    """run.json of a point that gave no result."""
+    content = {
+        "format": MARKER,
+        "format_version": 1,
+        "name": task.scenario.get("name", ""),
+        "status": {"name": outcome.status, "sentence": outcome.sentence, "time": None, "place": "", "detail": ""},
+        "trusted": False,
+        "wall_time": None,
+        "metrics": {},
+        "snaps": [],
+        "counters": {},
+        "peaks": {},
+        "command": task.command,
+        "versions": dict(maker.versions),
+        "provenance": dict(task.note),
+        "files": {},
+        "scenario": task.scenario,
+    }
+    return to_text(content).encode()
+
+
+def _about(study: Study, plan: Plan, options: Options) -> dict[str, Any]:
+    return {
+        "name": study.name,
+        "base": study.base,
+        "mode": study.mode,
+        "method": study.method if study.mode == "sample" else None,
+        "samples": study.samples or None,
+        "seed": study.seed if study.mode == "sample" else None,
+        "set": dict(study.fixed),
+        "parameters": {axis.path: axis.unit for axis in study.design.axes},
+        "metrics": list(study.metrics),
+        "points": len(plan.ids),
+        "unique_points": len(plan.first),
+        "command": options.command,
+        "versions": dict(plan.maker.versions),
+        "code": plan.maker.code,
+    }
+
+
+def _counts(summary: Summary) -> dict[str, Any]:
+    return {name: getattr(summary, name) for name in ("completed", "failed", "interrupted")}
+
+
+def note_failure(summary: Summary, failure: Failure) -> None:
+    """Count a failed point, and name it if there is room."""
+    summary.failed += 1
+    if len(summary.failures) < _FAILURES_TOLD:
+        summary.failures.append(failure)
