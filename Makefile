@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 RUNS := results/runs
 WIRES := corner90-universal corner90-amplatz
 
-.PHONY: help run test verify mutate lint format kernels clean
+.PHONY: help run test verify mutate lint format kernels wrappers clean
 .DELETE_ON_ERROR:
 
 help:
@@ -17,6 +17,7 @@ help:
 	@echo "make lint     check style and types"
 	@echo "make format   put the code into its format"
 	@echo "make kernels  build the contact kernel for all platforms"
+	@echo "make wrappers build the FMU's native wrapper for all platforms"
 	@echo "make clean    remove $(VENV) and caches (results stay)"
 
 run: $(VENV)/.ready
@@ -45,6 +46,9 @@ format: $(VENV)/.ready-dev
 
 kernels: $(VENV)/.ready-dev
 	$(BIN)/python -m gw_exudyn.model.kernel.build
+
+wrappers: $(VENV)/.ready-dev
+	$(BIN)/python -m gw_exudyn.fmi.wrapper.build
 
 clean:
 	rm -rf $(VENV) .mypy_cache .pytest_cache .ruff_cache .hypothesis build dist

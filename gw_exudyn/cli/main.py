@@ -24,6 +24,7 @@ COMMANDS: Mapping[str, str] = MappingProxyType(
             "animate",
             "compare",
             "report",
+            "fmu",
             "verify",
             "info",
             "list",

@@ -8,6 +8,7 @@ import re
 import pytest
 
 from gw_exudyn.model.kernel import build, library_name
+from gw_exudyn.native import compiler
 
 EXPORTED = re.findall(r"^EXPORT \w+ (gw_\w+)\(", (build.HERE / "contact.c").read_text(), re.MULTILINE)
 
@@ -26,7 +27,7 @@ def test_every_platform_that_the_loader_knows_has_its_library():
 
 
 def test_the_libraries_are_those_of_the_present_source():
-    assert build.record().get("source") == build.source_digest(), "contact.c has changed: make kernels"
+    assert build.KERNELS.record().get("source") == build.KERNELS.digest(), "contact.c has changed: make kernels"
 
 
 @pytest.mark.parametrize("name", sorted(build.TARGETS))
@@ -57,10 +58,10 @@ def test_the_linux_library_loads():
 
 
 def test_the_linux_library_rebuilt_has_the_same_bytes(tmp_path):
-    found = build.compiler()
+    found = compiler()
     if found is None:
         pytest.skip("ziglang is not installed, so there is no compiler")
-    if build.record().get("compiler") != f"ziglang {found}":
-        pytest.skip(f"the libraries were made with {build.record().get('compiler')}, here is ziglang {found}")
+    if build.KERNELS.record().get("compiler") != f"ziglang {found}":
+        pytest.skip(f"the libraries were made with {build.KERNELS.record().get('compiler')}, here is ziglang {found}")
     name = "contact-linux-x86_64.so"
-    assert build.build(name, tmp_path).read_bytes() == (build.LIBRARIES / name).read_bytes()
+    assert build.KERNELS.build(name, tmp_path).read_bytes() == (build.LIBRARIES / name).read_bytes()

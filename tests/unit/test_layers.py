@@ -15,7 +15,8 @@ MAY_IMPORT = {
     "errors": set(),
     "scenario": {"errors"},
     "quantities": {"errors"},
-    "model": {"errors", "quantities", "scenario"},
+    "native": {"errors"},
+    "model": {"errors", "quantities", "scenario", "native"},
     "engine": {"errors", "quantities", "scenario", "model"},
     "result": {"errors", "quantities", "scenario"},
     "metrics": ABOVE_RESULT,
@@ -29,7 +30,7 @@ MAY_IMPORT = {
     "events": ABOVE_RESULT | {"model", "engine"},
     "simulation": ABOVE_RESULT | {"model", "engine", "sampling", "trust", "events"},
     "rl": ABOVE_RESULT | {"model", "simulation"},
-    "fmi": ABOVE_RESULT | {"model", "engine", "simulation"},
+    "fmi": ABOVE_RESULT | {"native", "model", "engine", "simulation"},
     "verification": ABOVE_RESULT
     | {"metrics", "comparison", "plots", "storage", "model", "engine", "trust", "simulation"},
     "sweep": ABOVE_RESULT | {"metrics", "plots", "storage", "model", "engine", "simulation", "fmi"},

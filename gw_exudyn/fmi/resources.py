@@ -1,0 +1,89 @@
+"""The files in an FMU's resources: the wrapper's table (fmu/table.c reads the same) and the scenario."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from gw_exudyn.errors import StorageError
+from gw_exudyn.fmi.variables import REAL, TEXT, TIMEOUT, Variable
+
+TABLE, SCENARIO = "wrapper.txt", "scenario.json"
+_HEAD = "gw-fmu-wrapper 1"
+# One thread a worker: instances run side by side. Set before numpy is loaded.
+_ENVIRONMENT = ("OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1", "MKL_NUM_THREADS=1")
+
+
+@dataclass(frozen=True)
+class Launch:
+    """How the worker is started. python : interpreter to try first. path : folder from which it takes the package,
+    where that is not installed. version : of the package that it must have."""
+
+    python: str
+    path: str
+    version: str
+    arguments: tuple[str, ...] = ("-P", "-m", "gw_exudyn.fmi.worker")
+
+    @property
+    def remedy(self) -> str:
+        """What to do where the worker does not start."""
+        return (
+            f"install it with: pip install gw-exudyn=={self.version}, and let the environment variable "
+            "GW_EXUDYN_PYTHON name the Python that has it"
+        )
+
+
+def table_text(variables: Sequence[Variable], token: str, launch: Launch) -> str:
+    """The wrapper's table. Numbers are written as their bits, so that no locale can misread them."""
+    lines = [_HEAD, f"token {token}", f"version {launch.version}", f"python {launch.python}", f"path {launch.path}"]
+    lines += [f"remedy {launch.remedy}"]
+    lines += [f"argument {argument}" for argument in launch.arguments]
+    lines += [f"environment {pair}" for pair in _ENVIRONMENT]
+    lines += [f"timeout {i}" for i, variable in enumerate(variables) if variable.name == TIMEOUT]
+    lines += [_line(variable) for variable in variables]
+    return "\n".join(lines) + "\n"
+
+
+def _line(variable: Variable) -> str:
+    number = 0.0 if variable.kind == TEXT or variable.start is None else float(variable.start)
+    bits = struct.pack(">d", number).hex()
+    words = ["variable", variable.kind, variable.role, str(variable.size), bits, variable.name]
+    if variable.kind == TEXT:
+        text = str(variable.start or "")
+        if any(ord(letter) < ord(" ") for letter in text):
+            raise StorageError(f"{variable.name}: {text!r} has a line end or control character in it; take it out")
+        words.append(text)
+    return " ".join(words)
+
+
+def read_table(folder: Path) -> list[Variable]:
+    """The variables of an unpacked FMU, without what only a person reads. Raises StorageError."""
+    file = folder / TABLE
+    try:
+        lines = file.read_text(encoding="utf-8").split("\n")
+        return [_parsed(line) for line in lines if line.startswith("variable ")]
+    except (OSError, ValueError) as error:
+        raise StorageError(f"{file}: can't be read ({error}); export the FMU again") from error
+
+
+def _parsed(line: str) -> Variable:
+    _, kind, role, size, bits, name, *text = line.split(" ", 6)
+    start: Any = text[0] if text else ""
+    if kind != TEXT:
+        (number,) = struct.unpack(">d", bytes.fromhex(bits))
+        start = number if kind == REAL else int(number)
+    return Variable(name, kind, role, "", start, size=int(size))
+
+
+def read_scenario(folder: Path) -> dict[str, Any]:
+    """The exported scenario as plain data. Raises StorageError."""
+    file = folder / SCENARIO
+    try:
+        content: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise StorageError(f"{file}: can't be read ({error}); export the FMU again") from error
+    return content

@@ -1,0 +1,270 @@
+"""Running an FMU through fmpy: one instance, reset from run to run, so that a study pays for its start once."""
+
+from __future__ import annotations
+
+import csv
+import difflib
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gw_exudyn.errors import SolverError, StorageError, UsageError
+from gw_exudyn.fmi.variables import STATUS_CODE, STATUS_MESSAGE
+from gw_exudyn.result import Status
+from gw_exudyn.scenario.units import parse_unit
+
+_TAKES_TEXT = ("String",)
+
+
+@dataclass(frozen=True)
+class FmuRun:
+    """One run of an FMU.
+
+    outputs : structured array, one row an instant, `time` (s) first, then every output by its name, SI. code : 0 while
+    nothing is wrong. message : how the run stands, a sentence.
+    """
+
+    outputs: NDArray[Any]
+    code: int
+    message: str
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the columns."""
+        return tuple(self.outputs.dtype.names or ())
+
+    @property
+    def trusted(self) -> bool:
+        """The run is still good, or has ended by an event of its own."""
+        return self.code == 0 or list(Status)[self.code].trusted
+
+    @property
+    def final(self) -> dict[str, Any]:
+        """The outputs at the last instant."""
+        return {name: self.outputs[name][-1] for name in self.names}
+
+
+class FmuSession:
+    """An FMU with one instance that serves run after run.
+
+    Raises StorageError for a file that is no FMU, UsageError without fmpy, SolverError where the FMU does not start.
+    """
+
+    def __init__(self, file: str | os.PathLike[str]) -> None:
+        try:
+            from fmpy import extract, read_model_description
+            from fmpy.simulation import instantiate_fmu
+        except ImportError as error:
+            raise UsageError("the package fmpy is missing; install it with: pip install fmpy") from error
+        self._messages: list[str] = []
+        self._used = False
+        self._folder = Path(tempfile.mkdtemp(prefix="gw-fmu-"))
+        self._instance: Any = None
+        try:
+            try:
+                extract(os.fspath(file), unzipdir=str(self._folder))
+                self.description: Any = read_model_description(str(self._folder), validate=False)
+            except Exception as error:  # whatever a file that is no FMU leads to in fmpy
+                raise StorageError(f"{os.fspath(file)}: can't be read as an FMU: {error}") from error
+            self.variables = {variable.name: variable for variable in self.description.modelVariables}
+            with self._told():
+                self._instance = instantiate_fmu(
+                    str(self._folder), self.description, "CoSimulation", logger=self._log()
+                )
+        except BaseException:
+            self.close()
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """End the instance and its worker, and take the unpacked files away."""
+        if self._instance is not None:
+            self._instance.freeInstance()
+            self._instance = None
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+    def run(
+        self,
+        values: Mapping[str, Any] | None = None,
+        *,
+        inputs: NDArray[Any] | None = None,
+        stop: float | None = None,
+        step: float | None = None,
+    ) -> FmuRun:
+        """One run from the start.
+
+        values : parameters and starts of inputs by name, SI; what is not named has its exported start. inputs :
+        structured array with `time` and inputs by name. stop : s; None takes the FMU's default. step : s, between two
+        communication points; None takes the FMU's.
+        Raises UsageError for a name or value that does not fit, SolverError with the FMU's own sentence.
+        """
+        from fmpy import simulate_fmu
+
+        starts = {name: self._value(name, value) for name, value in (values or {}).items()}
+        for name in [] if inputs is None else (inputs.dtype.names or ())[1:]:
+            self._known(name, ("input",))
+        default = self.description.defaultExperiment
+        with self._told():
+            if self._used:
+                self._instance.reset()
+            self._used = True
+            outputs = simulate_fmu(
+                str(self._folder),
+                validate=False,
+                model_description=self.description,
+                fmu_instance=self._instance,
+                fmi_type="CoSimulation",
+                start_values=starts,
+                input=inputs,
+                stop_time=float(default.stopTime) if stop is None else stop,
+                output_interval=float(default.stepSize) if step is None else step,
+                early_return_allowed=True,
+            )
+            return FmuRun(outputs, *self._ending())
+
+    def _ending(self) -> tuple[int, str]:
+        if STATUS_CODE not in self.variables:
+            return 0, "The FMU tells nothing of its status."
+        code, message = (self.variables[name].valueReference for name in (STATUS_CODE, STATUS_MESSAGE))
+        getter = self._instance.getInteger if self.description.fmiVersion == "2.0" else self._instance.getInt32
+        text = self._instance.getString([message])[0]
+        return int(getter([code])[0]), text.decode() if isinstance(text, bytes) else text
+
+    def _known(self, name: str, causalities: tuple[str, ...]) -> Any:
+        """The variable of that name. Raises UsageError with the nearest where there is none of such causality."""
+        variable = self.variables.get(name)
+        allowed = [n for n, v in self.variables.items() if v.causality in causalities]
+        if variable is None or name not in allowed:
+            near = difflib.get_close_matches(name, allowed, n=2)
+            hint = f"; nearest: {', '.join(near)}" if near else f"; there are: {', '.join(allowed)}"
+            raise UsageError(f"{name}: no {' or '.join(causalities)} of the FMU has this name{hint}")
+        return variable
+
+    def _value(self, name: str, value: Any) -> Any:
+        """The value as fmpy takes it: text is read as the variable's type wants it."""
+        variable = self._known(name, ("parameter", "input"))
+        if variable.type in _TAKES_TEXT or not isinstance(value, str):
+            return value
+        readers: dict[str, Callable[[str], Any]] = {"Boolean": _boolean, "Integer": int, "Int32": int}
+        try:
+            return readers.get(variable.type, float)(value)
+        except ValueError:
+            raise UsageError(f"{name}: {value!r} is no {variable.type}; write a number in {_unit(variable)}") from None
+
+    def _log(self) -> Any:
+        def note(*arguments: Any) -> None:
+            status, message = arguments[-3], arguments[-1]
+            if status:
+                self._messages.append(message.decode() if isinstance(message, bytes) else str(message))
+
+        return note
+
+    def _told(self) -> _Told:
+        return _Told(self._messages)
+
+
+class _Told:
+    """Turns what fmpy raises into the FMU's own sentence."""
+
+    def __init__(self, messages: list[str]) -> None:
+        self._messages = messages
+
+    def __enter__(self) -> None:
+        self._messages.clear()
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if isinstance(error, Exception) and self._messages:
+            raise SolverError("\n".join(self._messages)) from error
+
+
+def _boolean(text: str) -> bool:
+    words = {"true": True, "1": True, "false": False, "0": False}
+    if text.lower() not in words:
+        raise ValueError(text)
+    return words[text.lower()]
+
+
+def _unit(variable: Any) -> str:
+    return str(variable.unit or "no unit")
+
+
+def run_point(session: FmuSession, point: Mapping[str, Any], *, step: float | None = None) -> dict[str, Any]:
+    """One point of a study on a reused instance: the outputs at the end, the largest of the forces, and the status."""
+    run = session.run(point, step=step)
+    peaks = {f"{name}.peak": float(run.outputs[name].max()) for name in run.names if "force" in name}
+    return {
+        **{name: float(value) for name, value in run.final.items() if np.ndim(value) == 0},
+        **peaks,
+        "code": run.code,
+    }
+
+
+def read_inputs(file: str | os.PathLike[str]) -> NDArray[Any]:
+    """Inputs against time from a CSV file: header `time,command.speed`, SI, or with a unit, `command.speed [mm/s]`.
+
+    Raises StorageError with file and line for what is no number, times that fall, or a missing time.
+    """
+    path = Path(file)
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as lines:
+            rows = [row for row in csv.reader(lines) if row]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise StorageError(f"{path}: can't be read: {error}") from error
+    if len(rows) < 2:
+        raise StorageError(f"{path}: has no rows; write a header, time,command.speed, and a row for each time")
+    heads = [_heading(path, cell) for cell in rows[0]]
+    if heads[0][0] != "time":
+        raise StorageError(f"{path}:1: the first column is {rows[0][0]!r}; it must be time")
+    table = np.zeros(len(rows) - 1, [(name, float) for name, _ in heads])
+    for i, row in enumerate(rows[1:]):
+        try:
+            table[i] = tuple(float(cell) * factor for cell, (_, factor) in zip(row, heads, strict=True))
+        except ValueError as error:
+            raise StorageError(f"{path}:{i + 2}: {error}; {len(heads)} numbers are needed") from error
+    if not (np.diff(table["time"]) >= 0).all():
+        raise StorageError(f"{path}: the times must not fall")
+    return table
+
+
+def _heading(path: Path, cell: str) -> tuple[str, float]:
+    name, bracket, unit = cell.strip().partition("[")
+    try:
+        return name.strip(), float(parse_unit(unit.rstrip("] ")).factor) if bracket else 1.0
+    except ValueError as error:
+        raise StorageError(f"{path}:1: {cell}: {error}") from error
+
+
+def write_run(run: FmuRun, session: FmuSession, values: Mapping[str, Any], folder: str | os.PathLike[str]) -> Path:
+    """Write outputs.csv (scalars, header with SI units) and run.json into a folder. Raises StorageError."""
+    target = Path(folder)
+    names = [name for name in run.names if run.outputs[name].ndim == 1]
+    units = {"time": "s", **{n: getattr(session.variables.get(n), "unit", None) or "1" for n in names if n != "time"}}
+    try:
+        target.mkdir(parents=True, exist_ok=True)
+        with (target / "outputs.csv").open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow([f"{name} [{units[name]}]" for name in names])
+            writer.writerows([[repr(row[name].item()) for name in names] for row in run.outputs])
+        content = {"status": run.code, "message": run.message, "values": dict(values)}
+        (target / "run.json").write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise StorageError(f"{target}: can't be written: {error.strerror or error}") from error
+    return target
