@@ -16,6 +16,7 @@ from gw_exudyn.model.frame import Frame
 from gw_exudyn.model.law import SINKING, Surroundings, contact_law, law_warnings, surroundings, value_or
 from gw_exudyn.model.outline import Outline, build_outline
 from gw_exudyn.model.patches import Patch
+from gw_exudyn.model.placing import placing_warnings
 from gw_exudyn.model.walls import Tube, Walls, build_walls, corners_into, tube_polylines, vessel_polylines
 from gw_exudyn.model.wire import DEFAULT_IMPERFECTION, Wire, build_wire
 
@@ -129,6 +130,7 @@ def build(scenario: Scenario) -> Model:
     )
     warnings = (
         *law_warnings(scenario, around),
+        *placing_warnings(scenario, outline, tube, around),
         *_too_coarse(scenario, wire),
         *_shaft_alone(scenario),
         *_off_the_walls(patches, walls),

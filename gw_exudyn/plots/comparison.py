@@ -43,6 +43,7 @@ def plot_comparison(first: Result, second: Result) -> Figure:
     _draw_distance(axes[2], first, second)
     unit, _ = shown("time", first.time, second.time)
     axes[-1].set_xlabel(axis_label("time", unit))
+    figure.align_ylabels(axes)
     return figure
 
 
