@@ -1,16 +1,18 @@
-# make run: both wires round the corner. make test: the test suite. Each sets up what it needs in .venv, once.
+# make run: both wires into the phantom. make test: the test suite. Each sets up what it needs in .venv, once.
 
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 RUNS := results/runs
-WIRES := corner90-universal corner90-amplatz
+WIRES := phantom-universal phantom-amplatz
+BOTH := $(WIRES:%=$(RUNS)/%)
 
-.PHONY: help run test verify mutate lint format kernels wrappers clean
+.PHONY: help run figure test verify mutate lint format kernels wrappers clean
 .DELETE_ON_ERROR:
 
 help:
-	@echo "make run      simulate both wires round the corner and draw them side by side"
+	@echo "make run      simulate both wires in the phantom, draw them side by side and compare them"
+	@echo "make figure   run both and draw docs/figures/phantom.png, the figure of the README"
 	@echo "make test     run the test suite"
 	@echo "make verify   show and write the evidence that the physics is right"
 	@echo "make mutate   make errors in the physics on purpose, and see that tests notice each"
@@ -22,9 +24,18 @@ help:
 
 run: $(VENV)/.ready
 	$(BIN)/gw-exudyn run $(WIRES)
-	@drawn=`$(BIN)/gw-exudyn plot $(WIRES:%=$(RUNS)/%) --figure insertion` && \
-	  echo "Results: $(WIRES:%=$(RUNS)/%)" && \
-	  echo "Figure:  `echo "$$drawn" | grep png`"
+	@drawn=`$(BIN)/gw-exudyn plot $(BOTH) --figure insertion` && \
+	  compared=`$(BIN)/gw-exudyn compare $(BOTH) --out $(RUNS)` && \
+	  echo "$$compared" | grep -v '\.p[nd][gf]$$' && \
+	  echo "Results:    $(BOTH)" && \
+	  echo "Figure:     `echo "$$drawn" | grep '\.png$$'`" && \
+	  echo "Comparison: `echo "$$compared" | grep '\.png$$'`"
+
+figure: $(VENV)/.ready
+	$(BIN)/gw-exudyn run $(WIRES) --no-figures --quiet
+	@drawn=`$(BIN)/gw-exudyn plot $(BOTH) --figure insertion --out docs/figures` && \
+	  rm `echo "$$drawn" | grep '\.pdf$$'` && mv `echo "$$drawn" | grep '\.png$$'` docs/figures/phantom.png
+	@echo docs/figures/phantom.png
 
 test: $(VENV)/.ready-dev
 	$(BIN)/python -m pytest

@@ -66,11 +66,10 @@ class Watch:
         target = self._spec.target
         if target is None or not self._spec.at_target:
             return None
-        x, y = self._stepper.model.frame.points_out(self._tip())
-        distance = math.hypot(x - target.at[0], y - target.at[1])
-        if distance > target.within:
+        tip = self._stepper.model.frame.points_out(self._tip())
+        if not target.reached(self._stepper.model.scenario.vessel, [tip])[0]:
             return None
-        return self._report(Status.TARGET_REACHED, f"{distance * 1e3:.4g} mm from it")
+        return self._report(Status.TARGET_REACHED, f"target: {target.words}")
 
     def _force(self) -> StatusReport | None:
         limit, push = self._spec.push_force, self._stepper.instant.push

@@ -167,9 +167,11 @@ def _target_of(scenario: Scenario, target: Span | None, within: float | None) ->
     given = scenario.stop.target
     place = target if target is not None else (given.at if given is not None else None)
     if place is None:
-        raise UsageError("the environment has no target; give target=(x, y) in metres, or stop.target in the scenario")
-    near = within if within is not None else (given.within if given is not None else 2e-3)
-    return (float(place[0]), float(place[1])), float(near)
+        raise UsageError(
+            "the environment has no target; give target=(x, y) in metres, or a place as stop.target in the scenario"
+        )
+    near = within if within is not None else (given.within if given is not None else None)
+    return (float(place[0]), float(place[1])), 2e-3 if near is None else float(near)
 
 
 def _driven_by(scenario: Scenario) -> tuple[str, float]:

@@ -75,6 +75,6 @@ def _metric_rows(content: dict[str, Any]) -> list[tuple[str, str, str]]:
     from gw_exudyn.cli.numbers import number_text
 
     return [
-        (name, number_text(name, metric["value"], metric["unit"]), str(metric["meaning"]))
+        (name, str(metric.get("label") or number_text(name, metric["value"], metric["unit"])), str(metric["meaning"]))
         for name, metric in content["metrics"].items()
     ]

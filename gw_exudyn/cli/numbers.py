@@ -15,8 +15,8 @@ _LIKE = {"m": "tip_x", "N": "push_force", "J": "insertion_work", "rad": "tip_ang
 
 
 def metric_text(name: str, metric: Metric) -> str:
-    """A metric in its display unit: `20.7 mN`."""
-    return number_text(name, metric.value, metric.unit)
+    """A metric in its display unit: `20.7 mN`; a coded one by its label."""
+    return metric.label or number_text(name, metric.value, metric.unit)
 
 
 def number_text(name: str, value: float | None, unit: str) -> str:

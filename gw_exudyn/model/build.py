@@ -25,6 +25,7 @@ from gw_exudyn.model.law import (
 from gw_exudyn.model.loads import LoadSet, build_loads
 from gw_exudyn.model.outline import Outline, build_outline
 from gw_exudyn.model.patches import Patch
+from gw_exudyn.model.placing import placing_warnings
 from gw_exudyn.model.walls import Tube, Walls, build_walls, corners_into, tube_polylines, vessel_polylines
 from gw_exudyn.model.wire import DEFAULT_IMPERFECTION, Wire, build_wire
 
@@ -148,6 +149,7 @@ def build(scenario: Scenario) -> Model:
     )
     warnings = (
         *law_warnings(scenario, around),
+        *placing_warnings(scenario, outline, tube, around),
         *_too_coarse(scenario, wire),
         *_shaft_alone(scenario),
         *_off_the_walls(patches, walls),

@@ -54,6 +54,7 @@ def plot_comparison(first: Result, second: Result | Course) -> Figure:
     if axes:
         unit, _ = shown("time", *(course.time for course in courses))
         axes[-1].set_xlabel(axis_label("time", unit))
+        figure.align_ylabels(axes)
     return figure
 
 

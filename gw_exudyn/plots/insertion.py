@@ -11,6 +11,7 @@ import numpy as np
 
 from gw_exudyn.metrics import metrics
 from gw_exudyn.plots.arrows import ForceScale, arrow_lengths, bundles, draw_arrows, round_down
+from gw_exudyn.plots.branch_names import draw_branch_names
 from gw_exudyn.plots.contact_vectors import contact_vectors
 from gw_exudyn.plots.scene import (
     beyond_exit,
@@ -174,11 +175,18 @@ def _layout(count: int, limits: Floats) -> tuple[Figure, list[Axes]]:
 
 def _draw(axes: Axes, panel: _Panel, limits: Floats, per_newton: float, own_scale: bool) -> None:
     draw_vessel(axes, panel.result)
+    draw_branch_names(axes, panel.result, limits, _arrow_points(panel, per_newton))
     _draw_wires(axes, panel)
     _draw_forces(axes, panel, per_newton)
     _draw_key(axes, panel, limits, per_newton, own_scale)
     set_title(axes, panel.result, wire_words(panel.result), _largest_force_words(panel.result))
     warn_untrusted(axes, panel.result)
+
+
+def _arrow_points(panel: _Panel, per_newton: float) -> Floats:
+    """(k, 2), m. Beginning, middle and end of every arrow."""
+    ends = [points + share * per_newton * forces for points, forces in panel.contacts.values() for share in (0, 0.5, 1)]
+    return np.concatenate([np.empty((0, 2)), *ends])
 
 
 def _shade(number: int, count: int) -> tuple[float, float, float]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gw_exudyn.plots.branch_names import draw_branch_names
 from gw_exudyn.plots.scene import common_views, deepest, draw_vessel, panel_size, same_vessel, set_view, view
 from gw_exudyn.plots.style import (
     LINE_STYLES,
@@ -50,6 +51,7 @@ def plot_tip_path(results: Result | Sequence[Result]) -> Figure:
         axes = figure.add_subplot(1, len(groups), number + 1)
         tidy(axes)
         draw_vessel(axes, group[0])
+        draw_branch_names(axes, group[0], limit, np.concatenate([_path(r) for r in group]))
         for place, result in enumerate(group):
             _draw(axes, result, place, step)
             warn_untrusted(axes, result)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from gw_exudyn.comparison import differences
 from gw_exudyn.errors import StorageError, UsageError
-from gw_exudyn.metrics import metrics
+from gw_exudyn.metrics import Metric, metrics
 from gw_exudyn.plots.save import render_figures
 from gw_exudyn.quantities import QUANTITIES, display
 from gw_exudyn.report.pack import packed_run, scalars_table
@@ -87,11 +87,18 @@ def _status(result: Result, name: str) -> str:
 
 def _metrics(results: Sequence[Result], names: Sequence[str]) -> str:
     found = [metrics(result) for result in results]
-    rows = [
-        [key, *(_number(key, one[key].value, one[key].unit) for one in found), found[0][key].meaning]
-        for key in found[0]
-    ]
+    known = {key: metric for one in reversed(found) for key, metric in one.items()}
+    # In the order of the run that has most of them; runs in other vessels have other branches.
+    order = dict.fromkeys(key for one in sorted(found, key=len, reverse=True) for key in one)
+    rows = [[key, *(_metric_text(key, one.get(key)) for one in found), known[key].meaning] for key in order]
     return _table(["metric", *names, "meaning"], rows)
+
+
+def _metric_text(name: str, metric: Metric | None) -> str:
+    """A metric as text; nothing where the run has none of that name."""
+    if metric is None:
+        return ""
+    return metric.label or _number(name, metric.value, metric.unit)
 
 
 def _scenarios(results: Sequence[Result], names: Sequence[str]) -> str:

@@ -330,6 +330,21 @@ class Row(Kind):
 
 
 @dataclass(frozen=True)
+class OrNone(Kind):
+    """A value of another kind, or nothing."""
+
+    kind: Kind
+
+    def read(self, value: Any) -> Any:
+        """The value as its kind reads it."""
+        return None if value is None else self.kind.read(value)
+
+    def json(self) -> dict[str, Any]:
+        """What its kind takes, or null."""
+        return {"anyOf": [self.kind.json(), {"type": "null"}]}
+
+
+@dataclass(frozen=True)
 class Table(Kind):
     """A list of items of one kind; `fewest` to `most` of them."""
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from gw_exudyn.scenario.fields import Number, Quantity, Row, Table
+from gw_exudyn.scenario.fields import Number, OrNone, Quantity, Row, Table
 
 FULL_TURN = 2 * math.pi
 
@@ -33,6 +33,7 @@ ARC_RADIUS = Quantity("m", 0.1e-3, 5.0, "mm")
 ANGLE = Quantity("rad", -FULL_TURN, FULL_TURN, "deg")
 COORDINATE = Quantity("m", -10.0, 10.0, "mm")
 POINT = Row(("x", "y"), (COORDINATE, COORDINATE))
+POINT_OR_NONE = OrNone(POINT)
 BRANCH_LENGTH = Quantity("m", 1e-3, 5.0, "mm", optional=True)
 BRANCH_ANGLE = Quantity("rad", -math.radians(150), math.radians(150), "deg", optional=True)
 BRANCH_PLACE = Quantity("m", 0.0, 5.0, "mm", optional=True)
@@ -67,7 +68,7 @@ FORCE_OR_NONE = Quantity("N", -100.0, 100.0, "mN", optional=True)
 FORCE_LIMIT = Quantity("N", 1e-6, 1000.0, "N", optional=True)
 FORCE_TABLE = Table(Row(("time", "force"), (INSTANT, FORCE)), 2, 100_000, optional=True)
 STALL_TRAVEL = Quantity("m", 0.1e-3, 5.0, "mm", auto=True, off=True)
-NEARNESS = Quantity("m", 1e-6, 0.1, "mm")
+NEARNESS = Quantity("m", 1e-6, 0.1, "mm", optional=True)
 HUB_MASS = Quantity("kg", 1e-6, 10.0, "g")
 HUB_DAMPING = Quantity("N*s/m", 1e-3, 1e6, "N*s/m")
 HUB_SPEED = Quantity("m/s", 1e-6, 1.0, "mm/s")

@@ -85,11 +85,19 @@ def csv_rows(text: str, file: str) -> list[tuple[int, list[str]]]:
     rows = []
     for number, line in enumerate(text.splitlines(), 1):
         if line.strip() and not line.lstrip().startswith("#"):
+            _check_separator(line, file, number)
             try:
                 rows.append((number, next(csv.reader([line]))))
             except csv.Error as error:
                 raise wrong(f"is no CSV row: {error}", file=file, line=number) from None
     return rows
+
+
+def _check_separator(row: str, file: str, line: int) -> None:
+    for mark, words in ((";", "semicolons"), ("\t", "tabs")):
+        if mark in row.strip():
+            text = f"its columns are separated by {words}; separate them by commas, and write decimals with a point"
+            raise wrong(text, file=file, line=line)
 
 
 def _header(line: int, cells: list[str], file: str) -> tuple[list[str], dict[str, Unit]]:
@@ -98,8 +106,7 @@ def _header(line: int, cells: list[str], file: str) -> tuple[list[str], dict[str
     for cell in cells:
         match = _HEADER.fullmatch(cell)
         if match is None:
-            hint = "; separate with commas, not semicolons" if ";" in cell else ""
-            raise wrong(f"header {shown(cell)} is not understood{hint}; write {_FORM}", file=file, line=line)
+            raise wrong(f"header {shown(cell)} is not understood; write {_FORM}", file=file, line=line)
         columns.append(match.group(1).lower())
         units[columns[-1]] = header_unit(match.group(2) or "m", file, line)
     if sorted(columns) not in (["x", "y"], ["open", "x", "y"]):

@@ -21,15 +21,15 @@ ENDINGS = (".csv", *UNIT_NEEDED, ".svg")
 def read_any_outline(path: Path, unit: str | None, length: float | None, path_id: str | None) -> Outline:
     """The outline in a file.
 
-    unit : of the coordinates in WKT and GeoJSON. length : m, width of the viewBox of an SVG. path_id : id of the path
-        in an SVG, where there are several.
+    unit : of the coordinates in WKT and GeoJSON. length : m, width of the viewBox of an SVG; None takes the
+        drawing's. path_id : id of the path in an SVG, where there are several.
 
     Raises PydanticCustomError or ValidationError with the file, and the line where there is one.
     """
     ending = path.suffix.lower()
     _check_scale(ending, unit, length, path_id)
     if ending == ".svg":
-        return closed(read_svg(path, length or 1.0, path_id))
+        return closed(read_svg(path, length, path_id))
     if ending not in UNIT_NEEDED:
         return read_outline(path)
     text = text_of(path, LARGEST_FILE)
@@ -52,8 +52,6 @@ def _check_scale(ending: str, unit: str | None, length: float | None, path_id: s
         raise wrong(f"ends in {ending or 'nothing'}; outlines are read from {', '.join(ENDINGS)}")
     if ending in UNIT_NEEDED and unit is None:
         raise wrong(f"a {ending} file does not say its unit of length; give unit beside file, as unit: mm")
-    if ending == ".svg" and length is None:
-        raise wrong("an SVG has no size of its own; give length beside file, the width of its viewBox: length: 120 mm")
     if unit is not None and ending not in UNIT_NEEDED:
         where = "its header names the unit" if ending == ".csv" else "give length instead"
         raise wrong(f"unit is not for a {ending} file: {where}")

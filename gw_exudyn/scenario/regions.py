@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     import numpy as np
+    import shapely
     from numpy.typing import ArrayLike, NDArray
 
 NEAR = 0.1e-3
@@ -50,6 +51,11 @@ class Lumen(Section):
         """Names of the branches in the order of the file; `lumen` alone for a vessel without branches."""
         return tuple(_regions_of(self))
 
+    @property
+    def has_branches(self) -> bool:
+        """Whether the vessel has branches by name."""
+        return self.branch_names != (WHOLE,)
+
     def regions(self) -> dict[str, Region]:
         """The branches by name."""
         return dict(_regions_of(self))
@@ -69,15 +75,26 @@ class Lumen(Section):
         places = np.asarray(points, dtype=float)
         flat = places.reshape(-1, 2)
         dots = shapely.points(np.where(np.isfinite(flat), flat, 1e9))
-        regions = list(_regions_of(self).values())
-        if not regions:
+        if not self.branch_names:  # no vessel at all
             return np.full(places.shape[:-1], "")
-        apart = np.array([shapely.distance(shapely.Polygon(region.outline), dots) for region in regions])
+        whole, areas = _areas_of(self)
+        apart = np.array([shapely.distance(area, dots) for area in areas])
         nearest = np.argmin(apart, axis=0)  # the first of equals
-        names = np.array([*(region.name for region in regions), ""])
-        inside = shapely.distance(shapely.Polygon(self._whole()), dots) <= NEAR
-        found: NDArray[np.str_] = names[np.where(inside, nearest, len(regions))]
+        names = np.array([*self.branch_names, ""])
+        inside = shapely.distance(whole, dots) <= NEAR
+        found: NDArray[np.str_] = names[np.where(inside, nearest, len(areas))]
         return found.reshape(places.shape[:-1])
+
+
+@functools.lru_cache(maxsize=32)
+def _areas_of(vessel: Lumen) -> tuple[shapely.Polygon, list[shapely.Polygon]]:
+    """The lumen, and every branch for itself."""
+    import shapely
+
+    areas = [shapely.Polygon(region.outline) for region in _regions_of(vessel).values()]
+    whole = shapely.Polygon(vessel._whole())
+    shapely.prepare([whole, *areas])
+    return whole, areas
 
 
 @functools.lru_cache(maxsize=32)

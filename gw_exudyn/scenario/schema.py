@@ -33,7 +33,7 @@ from gw_exudyn.scenario.kinds import (
 )
 from gw_exudyn.scenario.loads import DiscSpec, NoseSpec, TipSpec
 from gw_exudyn.scenario.problems import place_of
-from gw_exudyn.scenario.stop import StopSpec
+from gw_exudyn.scenario.stop import StopSpec, check_target
 from gw_exudyn.scenario.vessel import Vessel
 from gw_exudyn.scenario.wire import WireSpec
 from gw_exudyn.scenario.words import shown
@@ -226,6 +226,13 @@ class Scenario(Section):
     @classmethod
     def _empty_is_default(cls, value: Any) -> Any:
         return {} if value is None else value  # a section whose lines are all commented out
+
+    @field_validator("stop", mode="after")
+    @classmethod
+    def _target_is_there(cls, stop: StopSpec, info: ValidationInfo) -> StopSpec:
+        if "vessel" in info.data:
+            check_target(stop.target, info.data["vessel"])
+        return stop
 
     @field_validator("output", mode="after")
     @classmethod

@@ -24,6 +24,7 @@ Matrix = NDArray[np.float64]
 CURVE_TOLERANCE = 1e-4
 """How far, over the width of the viewBox, a straight wall piece may lie from the curve that it stands for."""
 
+_SIZES = {"mm": 1e-3, "cm": 1e-2, "in": 25.4e-3}
 _DEEPEST_SPLIT = 12
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _NO_COMMAND = re.compile(r"[^MmZzLlHhVvCcSsQqTtAa0-9eE+.,\s-]+")
@@ -35,13 +36,15 @@ class _Drawing:
     """What the XML holds. paths : (id, data, matrix, line)."""
 
     view_box: str | None = None
+    width: str = ""
     paths: list[tuple[str | None, str, Matrix, int]] = field(default_factory=list)
     root: str | None = None
     root_line: int = 1
 
 
-def read_svg(path: Path, length: float, path_id: str | None) -> Outline:
-    """The outline of an SVG's path. length : m, of the viewBox's width. The origin is the viewBox's lower left corner.
+def read_svg(path: Path, length: float | None, path_id: str | None) -> Outline:
+    """The outline of an SVG's path. length : m, of the viewBox's width; None takes the drawing's own, if it
+    is in mm, cm or in. The origin is the viewBox's lower left corner.
 
     Edge i of the outline is the path's drawn command i, a curve counting as one edge.
 
@@ -55,6 +58,7 @@ def read_svg(path: Path, length: float, path_id: str | None) -> Outline:
     drawing = _parsed(text, file)
     left, top, width, height = _view_box(drawing, file)
     _, data, matrix, line = _chosen(drawing, path_id, file)
+    length = _own_width(drawing, file) if length is None else length
     scale = length / width
     to_metres = scale * np.array([[1.0, 0.0, -left], [0.0, -1.0, top + height]]) @ matrix
     points, commands = _flattened(data, to_metres, CURVE_TOLERANCE * length, file, line)
@@ -69,6 +73,7 @@ def _parsed(text: str, file: str) -> _Drawing:
         line, name = parser.CurrentLineNumber, tag.rpartition(" ")[2]
         if drawing.root is None:
             drawing.root, drawing.root_line, drawing.view_box = name, line, attributes.get("viewBox")
+            drawing.width = attributes.get("width", "")
         stack.append(stack[-1] @ _transform(attributes.get("transform", ""), file, line))
         if name == "path":
             drawing.paths.append((attributes.get("id"), attributes.get("d", ""), stack[-1], line))
@@ -96,6 +101,16 @@ def _view_box(drawing: _Drawing, file: str) -> tuple[float, float, float, float]
     if len(numbers) != 4 or not (numbers[2] > 0 and numbers[3] > 0):
         raise wrong(f"viewBox {shown(drawing.view_box)} is not understood; {remedy}", file=file, line=line)
     return numbers[0], numbers[1], numbers[2], numbers[3]
+
+
+def _own_width(drawing: _Drawing, file: str) -> float:
+    """The drawing's width, m, where it is in a unit that has a size: pixels have none."""
+    match = re.fullmatch(rf"\s*({_NUMBER})\s*(mm|cm|in)\s*", drawing.width)
+    if match is None or not float(match[1]) > 0:
+        text = "the svg element has no width in mm, cm or in, so its scale is unknown"
+        remedy = "give length beside file, the width of its viewBox: length: 120 mm"
+        raise wrong(f"{text}; {remedy}", file=file, line=drawing.root_line)
+    return float(match[1]) * _SIZES[match[2]]
 
 
 def _chosen(drawing: _Drawing, path_id: str | None, file: str) -> tuple[str | None, str, Matrix, int]:

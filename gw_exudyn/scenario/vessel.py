@@ -172,7 +172,9 @@ class PolygonForm(Section):
         default=None, description="unit of the coordinates in a WKT or GeoJSON file", examples=["mm"]
     )
     length: Annotated[float | None, DRAWING_LENGTH] = Field(
-        default=None, description="width of the viewBox of an SVG file", examples=["120 mm"]
+        default=None,
+        description="width of the viewBox of an SVG file; the drawing's own width, if in mm, cm or in, if not given",
+        examples=["120 mm"],
     )
     id: Annotated[str | None, Text("id", optional=True)] = Field(
         default=None, description="id of the lumen's path in an SVG file that has several"

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gw_exudyn.errors import ScenarioError, StorageError
-from gw_exudyn.metrics import metrics
+from gw_exudyn.metrics import Metric, metrics
 from gw_exudyn.result import SnapEvent, Status, StatusReport
 
 if TYPE_CHECKING:
@@ -51,9 +51,7 @@ def manifest(result: Result, command: str | Sequence[str], files: Mapping[str, s
         "status": _status_entry(result.status),
         "trusted": result.status.status.trusted,
         "wall_time": result.wall_time,
-        "metrics": {
-            name: {"value": m.value, "unit": m.unit, "meaning": m.meaning} for name, m in metrics(result).items()
-        },
+        "metrics": {name: _metric_entry(metric) for name, metric in metrics(result).items()},
         "snaps": [{"time": snap.time, "released_energy": snap.released_energy} for snap in result.snaps],
         "counters": dict(result.counters),
         "peaks": {name: {"value": value, "time": time} for name, (value, time) in result.peaks.items()},
@@ -160,6 +158,12 @@ def _status_entry(report: StatusReport) -> dict[str, Any]:
         "place": report.place,
         "detail": report.detail,
     }
+
+
+def _metric_entry(metric: Metric) -> dict[str, Any]:
+    """A coded number has a label besides."""
+    label = {"label": metric.label} if metric.label else {}
+    return {"value": metric.value, **label, "unit": metric.unit, "meaning": metric.meaning}
 
 
 def _no_run(folder: Path) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import dataclasses
 import json
 import re
 
@@ -13,6 +14,7 @@ from synthetic import StandInWire, made_up_result
 from gw_exudyn.errors import UsageError
 from gw_exudyn.report import MOST_RUNS, report_page
 from gw_exudyn.report.pack import packed_run
+from gw_exudyn.scenario.branches import BranchesVessel
 
 
 @pytest.fixture(scope="module")
@@ -79,3 +81,15 @@ def test_numbers_that_are_not_finite_leave_valid_data(result):
     broken["push_force"][3] = np.inf
     page = report_page([type(result)(**{**result.__dict__, "dataset": broken})], figures=False)
     assert data_of(page)["runs"][0]["nodes"] == 61
+
+
+def test_runs_in_different_vessels_tell_the_metrics_of_both(result):
+    branch = {"name": "along", "points": [[0.0, 0.0], [60e-3, 0.0]], "diameter": 6e-3}
+    vessel = BranchesVessel.model_validate({"kind": "branches", "branches": [branch]})
+    other = dataclasses.replace(result, scenario=dataclasses.replace(result.scenario, vessel=vessel))
+    for pair in ([result, other], [other, result]):
+        (row,) = re.findall(
+            r"<tr>(?:(?!</tr>).)*contact_time_along.*?</tr>", report_page(pair, figures=False), re.DOTALL
+        )
+        cells = re.findall(r"<td[^>]*>(.*?)</td>", row)
+        assert (cells[1 + pair.index(result)], cells[1 + pair.index(other)][-1:]) == ("", "s")

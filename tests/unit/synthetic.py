@@ -9,6 +9,8 @@ import numpy as np
 
 from gw_exudyn.quantities import CONTACT_FIELDS, JOINT_FIELDS, NODE_FIELDS, SCALARS
 from gw_exudyn.result import Result, SnapEvent, Status, StatusReport
+from gw_exudyn.scenario.regions import Lumen
+from gw_exudyn.scenario.stop import StopSpec
 
 FROM_TIP = 0.15 * (1 - np.arange(11) / 10)
 LEAD, RADIUS, LIMB, HALF_WIDTH = 0.030, 0.012, 0.060, 0.003
@@ -20,6 +22,14 @@ class StandInWire:
     model: str | None = "universal-ii"
 
 
+class StandInVessel(Lumen):
+    """No branches by name."""
+
+    def _whole(self) -> list[tuple[float, float]]:
+        outer, inner = corner_walls()
+        return [*map(tuple, outer), *map(tuple, inner)]
+
+
 @dataclass(frozen=True)
 class StandInScenario:
     """What results need to know of a scenario."""
@@ -28,6 +38,8 @@ class StandInScenario:
     wire: StandInWire = field(default_factory=StandInWire)
     supports: tuple[Any, ...] = ()
     nose: Any = None
+    vessel: Lumen = field(default_factory=StandInVessel)
+    stop: StopSpec = field(default_factory=StopSpec)
 
     def to_dict(self) -> dict[str, Any]:
         return {"name": self.name, "wire": {"diameter": self.wire.diameter, "model": self.wire.model}}

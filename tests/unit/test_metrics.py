@@ -7,11 +7,14 @@ import pytest
 from synthetic import FROM_TIP, StandInScenario, made_up_result, sample
 
 from gw_exudyn.metrics import LEAST_WORK, metrics
+from gw_exudyn.quantities import CONTACT_FIELDS
 from gw_exudyn.result import Result, SnapEvent, Status, StatusReport
+from gw_exudyn.scenario.branches import BranchesVessel
+from gw_exudyn.scenario.stop import StopSpec
 from gw_exudyn.trust import ENERGY_FLOOR
 
 
-def small(snaps=(), peaks=None, **series):
+def small(snaps=(), peaks=None, scenario=None, **series):
     """A result of as many instants, one second apart, as each given series has values."""
     count = len(next(iter(series.values())))
     samples = [
@@ -19,7 +22,7 @@ def small(snaps=(), peaks=None, **series):
     ]
     return Result.from_samples(
         samples,
-        scenario=StandInScenario(),
+        scenario=scenario or StandInScenario(),
         status=StatusReport(Status.COMPLETED),
         node_arc_length=FROM_TIP,
         joint_arc_length=FROM_TIP[:-1],
@@ -167,3 +170,86 @@ def test_where_the_vessel_was_pressed_hardest():
     assert found["wall_force_max_x"] == result.values("contact_x")[at]
     assert found["wall_force_max_arc_length"] == result.values("contact_arc_length")[at]
     assert np.isnan(values(small(tip_x=[0.0, 1e-3]))["wall_force_max_x"])
+
+
+def tee(**stop):
+    """Two branches: along x to 40 mm, and up from its middle."""
+    branches = [
+        {"name": "along", "points": [[0.0, 0.0], [40e-3, 0.0]], "diameter": 4e-3},
+        {"name": "up", "parent": "along", "at": 20e-3, "angle": np.pi / 2, "length": 30e-3, "diameter": 4e-3},
+    ]
+    vessel = BranchesVessel.model_validate({"kind": "branches", "branches": branches})
+    return StandInScenario(vessel=vessel, stop=StopSpec.model_validate(stop))
+
+
+def contacts(*rows):
+    """Contact fields of one instant: x, y, arc length (m), normal force (N), owner."""
+    table = np.array(rows, dtype=float).reshape(-1, 5)
+    fields = dict.fromkeys(CONTACT_FIELDS, np.zeros(len(table)))
+    given = dict(zip(("x", "y", "arc_length", "normal_force", "owner"), table.T, strict=True))
+    return fields | {f"contact_{name}": column for name, column in given.items()}
+
+
+def touching(*instants, **series):
+    """A result in the tee whose instants, a second apart, have these contacts."""
+    samples = [sample(float(i), 0.0, 0.0, FROM_TIP) | contacts(*rows) for i, rows in enumerate(instants)]
+    return small(scenario=tee(), **{name: [one[name] for one in samples] for name in CONTACT_FIELDS}, **series)
+
+
+class TestTarget:
+    def test_without_a_target_there_are_no_metrics_of_it(self):
+        assert not [name for name in values(small(tip_x=[0.0])) if name.startswith("target")]
+
+    def test_time_and_depth_are_those_of_the_first_output_near_the_point(self):
+        scenario = tee(target={"at": [10e-3, 0.0], "within": 1.5e-3})
+        depth = [0.0, 4e-3, 9e-3, 12e-3]
+        found = values(small(scenario=scenario, tip_x=[0.0, 4e-3, 9e-3, 10e-3], insertion_depth=depth))
+        assert (found["target_reached"], found["target_time"], found["target_insertion_depth"]) == (1.0, 2.0, 9e-3)
+
+    def test_a_branch_is_reached_where_its_parent_s_lumen_ends(self):
+        scenario = tee(target={"branch": "up"})
+        found = values(small(scenario=scenario, tip_x=[20e-3] * 4, tip_y=[0.0, 1.9e-3, 2.1e-3, 5e-3]))
+        assert (found["target_reached"], found["target_time"]) == (1.0, 2.0)
+
+    def test_a_target_that_was_never_reached_says_so(self):
+        found = values(small(scenario=tee(target={"branch": "up"}), tip_x=[10e-3, np.nan]))
+        assert found["target_reached"] == 0.0
+        assert np.isnan(found["target_time"])
+        assert np.isnan(found["target_insertion_depth"])
+
+
+class TestBranches:
+    """The nodes of the wire are 15 mm apart: each stands for 15 mm, the tip for half of that."""
+
+    def test_a_vessel_without_names_has_no_metrics_of_branches(self):
+        assert not [name for name in values(made_up_result()) if "contact_time" in name or name.endswith("branch")]
+
+    def test_length_and_time_are_counted_by_branch_and_not_for_the_catheter(self):
+        along, up = (10e-3, -2e-3), (22e-3, 20e-3)
+        found = values(
+            touching(
+                [(*along, 30e-3, 1.0, 0), (*along, 45e-3, 1.0, 0), (*up, 0.0, 0.5, 0)],
+                [(*along, 30e-3, 1.0, 0), (*along, 75e-3, 1.0, 1)],
+                [(*along, 31e-3, 1.0, 0), (*along, 29e-3, 1.0, 0)],
+                [],
+            )
+        )
+        # The first output stands for half a second, the others up to the third for one each.
+        assert found["contact_time_along"] == pytest.approx(2.5)
+        assert found["contact_length_max_along"] == pytest.approx(30e-3)
+        # Two contacts beside one node count it once.
+        assert found["contact_length_mean_along"] == pytest.approx((0.5 * 30e-3 + 15e-3 + 15e-3) / 2.5)
+        assert found["contact_time_up"] == pytest.approx(0.5)
+        assert found["contact_length_max_up"] == pytest.approx(7.5e-3)
+
+    def test_where_there_is_no_contact_there_is_no_mean(self):
+        found = values(touching([], []))
+        assert (found["contact_time_up"], found["contact_length_max_up"]) == (0.0, 0.0)
+        assert np.isnan(found["contact_length_mean_up"])
+        assert np.isnan(found["wall_force_max_branch"])
+
+    def test_the_branch_of_the_largest_force_has_its_number_and_its_name(self):
+        result = touching([(10e-3, 2e-3, 0.0, 1.0, 0)], [(22e-3, 20e-3, 0.0, 3.0, 0), (0.0, 0.0, 0.0, 9.0, 1)])
+        metric = metrics(result)["wall_force_max_branch"]
+        assert (metric.value, metric.label) == (1.0, "up")
+        assert "0 along, 1 up" in metric.meaning

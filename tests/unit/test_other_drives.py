@@ -11,7 +11,7 @@ from scenes import scenario
 from gw_exudyn.cli.resolved import resolved_rows
 from gw_exudyn.errors import ScenarioError
 from gw_exudyn.model import build
-from gw_exudyn.scenario import json_schema, scenario_from_dict
+from gw_exudyn.scenario import json_schema, load_scenario, scenario_from_dict
 
 FORCE: dict[str, Any] = {
     "kind": "force",
@@ -114,3 +114,23 @@ def test_the_schema_knows_the_forms() -> None:
     schema = json_schema()
     assert {"DriveForm", "ForceForm", "TipSpeedForm", "StopSpec", "TargetSpec"} <= set(schema["$defs"])
     assert {"const": "off"} in schema["$defs"]["StopSpec"]["properties"]["tip_stall"]["anyOf"]
+
+
+@pytest.mark.parametrize(
+    ("target", "told"),
+    [
+        ("{branch: targt}", "stop.target.branch: there is no branch 'targt'; did you mean 'target'"),
+        ("{at: [1 mm, 2 mm], branch: left}", "stop.target: has both a point and a branch; give {at:"),
+        ("{}", "stop.target: is neither a point nor a branch; give {at:"),
+        ("{branch: left, within: 1 mm}", "within belongs to a point"),
+    ],
+)
+def test_a_target_is_a_point_or_a_branch_that_is_there(target: str, told: str) -> None:
+    with pytest.raises(ScenarioError) as caught:
+        load_scenario("phantom-universal", [f"stop.target={target}"])
+    assert told in str(caught.value)
+
+
+def test_a_vessel_without_branches_has_none_to_reach() -> None:
+    with pytest.raises(ScenarioError, match="a vessel of this kind has none by name; give target: "):
+        load_scenario("straight", ["stop.target={branch: left}"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import subprocess
 import sys
 from pathlib import Path
@@ -22,17 +23,32 @@ from gw_exudyn.plots import (
     save_figures,
 )
 from gw_exudyn.plots.arrows import bundles, round_down
+from gw_exudyn.plots.branch_names import draw_branch_names
 from gw_exudyn.plots.contact_vectors import contact_vectors
 from gw_exudyn.plots.save import render
 from gw_exudyn.plots.scene import enclosed, view
+from gw_exudyn.plots.style import new_figure
 from gw_exudyn.plots.tip_path import _round_step
 from gw_exudyn.quantities import CONTACT_FIELDS
 from gw_exudyn.result import Result, Status, StatusReport
+from gw_exudyn.scenario.branches import BranchesVessel
 
 
 @pytest.fixture(scope="module")
 def universal():
     return made_up_result(segments=60)
+
+
+@pytest.fixture(scope="module")
+def branched():
+    """The made-up course in a vessel of two branches that are named."""
+    branches = [
+        {"name": "along", "points": [[0.0, 0.0], [30e-3, 0.0]], "diameter": 6e-3},
+        {"name": "up", "points": [[30e-3, 0.0], [30e-3, 60e-3]], "diameter": 6e-3},
+    ]
+    vessel = BranchesVessel.model_validate({"kind": "branches", "branches": branches})
+    result = made_up_result(segments=60)
+    return dataclasses.replace(result, scenario=dataclasses.replace(result.scenario, vessel=vessel))
 
 
 @pytest.fixture(scope="module")
@@ -356,3 +372,28 @@ def test_figures_that_can_not_be_written_are_a_storage_error(universal, tmp_path
     (tmp_path / "figures").write_text("a file")
     with pytest.raises(StorageError, match="figures can't be written"):
         save_figures(universal, tmp_path / "figures", names=["energy"], formats=["png"])
+
+
+@pytest.mark.parametrize("plot", [plot_insertion, plot_tip_path])
+def test_branches_are_named_beside_their_walls_in_view(plot, branched, universal):
+    (axes,) = plot(branched).axes
+    named = {one.get_text(): one for one in axes.texts if one.get_text() in ("along", "up")}
+    assert set(named) == {"along", "up"}
+    for name, text in named.items():
+        x, y = (part * 1e-3 for part in text.xy)
+        assert axes.get_xlim()[0] < text.xy[0] < axes.get_xlim()[1]
+        assert axes.get_ylim()[0] < text.xy[1] < axes.get_ylim()[1]
+        # On the wall: half of the width off the centre line.
+        assert abs(y) == pytest.approx(3e-3, abs=1e-4) if name == "along" else abs(x - 30e-3) == pytest.approx(3e-3)
+    assert not [text for text in plot(universal).axes[0].texts if text.get_text() == "lumen"]
+
+
+def test_a_branch_s_name_keeps_away_from_the_arrows(branched):
+    spots = [np.array([[x, 3e-3]]) for x in (10e-3, 20e-3)]
+    figure = new_figure(4, 4)
+    for busy in spots:
+        axes = figure.add_subplot()
+        limits = np.array([[-10e-3, -10e-3], [60e-3, 60e-3]])
+        draw_branch_names(axes, branched, limits, busy)
+        (text,) = [text for text in axes.texts if text.get_text() == "along"]
+        assert np.hypot(*(np.array(text.xy) * 1e-3 - busy[0])) > 4e-3

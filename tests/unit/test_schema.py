@@ -385,8 +385,8 @@ class TestPolygon:
                   "then one point a line"]),
             ("0,0\n1,1\n", [":1: vessel.file: header '0' is not understood; write 'x,y' for metres or 'x [mm],y "
                             "[mm]', with a column 'open' if you like"]),
-            ("x;y\n0;0\n", [":1: vessel.file: header 'x;y' is not understood; separate with commas, not semicolons; "
-                            "write 'x,y' for metres or 'x [mm],y [mm]', with a column 'open' if you like"]),
+            ("x;y\n0;0\n", [":1: vessel.file: its columns are separated by semicolons; separate them by commas, and "
+                             "write decimals with a point"]),
             ("x [N],y [N]\n", [":1: vessel.file: header: 'N' is a force, not a length; units that fit: m, cm, mm, "
                                "um, in, Fr"]),
             ("x [mm],y\n", [":1: vessel.file: header gives x and y different units; give both the same"]),

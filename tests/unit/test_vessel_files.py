@@ -15,6 +15,7 @@ from gw_exudyn.errors import ScenarioError
 from gw_exudyn.model.outline import build_outline
 from gw_exudyn.scenario import scenario_from_dict
 from gw_exudyn.scenario.centreline import MOST_OUT_OF_PLANE
+from gw_exudyn.scenario.outline_files import read_any_outline
 from gw_exudyn.scenario.svg import CURVE_TOLERANCE
 
 MM = 1e-3
@@ -200,3 +201,15 @@ def test_a_vessels_own_file_may_lie_elsewhere_and_name_files_beside_it(tmp_path)
     keys = {"vessel": {"kind": "file", "file": "vessels/own.yaml"}}
     found = scenario_from_dict(scenario().to_dict() | keys, folder=tmp_path).vessel
     assert found.branch_names == ("line",)
+
+
+@pytest.mark.parametrize(("width", "scale"), [("120mm", 1.0), ("12cm", 1.0), (" 4.7244094488in ", 1.0), ("60mm", 0.5)])
+def test_a_drawing_with_a_width_in_a_real_unit_needs_no_length(tmp_path, width, scale):
+    """As an editor saves it: a group that is moved, relative commands."""
+    (tmp_path / "a.svg").write_text(
+        f"<svg xmlns='http://www.w3.org/2000/svg' width='{width}' height='80mm' viewBox='0 0 120 80'>"
+        "<g transform='translate(5,10)'><path d='m 0,30 h 40 v 4 H 0 Z'/></g></svg>"
+    )
+    outline = read_any_outline(tmp_path / "a.svg", None, None, None)
+    wanted = np.array([(5, 40), (45, 40), (45, 36), (5, 36)]) * 1e-3 * scale
+    assert np.array(outline.points) == pytest.approx(wanted)

@@ -8,7 +8,7 @@ import pytest
 
 from gw_exudyn.errors import ScenarioError
 from gw_exudyn.model import build
-from gw_exudyn.scenario import load_scenario
+from gw_exudyn.scenario import list_shipped, load_scenario
 
 HEAD = """\
 wire: {model: universal-ii}
@@ -253,8 +253,8 @@ MISTAKES = [
     pytest.param(
         polygon("a.svg"),
         {"a.svg": svg('<path d="M 0 0 H 40 V 4 H 0 Z"/>')},
-        "s.yaml:4: vessel.file: an SVG has no size of its own; give length beside file, the width of "
-        "its viewBox: length: 120 mm",
+        "a.svg:1: vessel.file: the svg element has no width in mm, cm or in, so its scale is unknown; "
+        "give length beside file, the width of its viewBox: length: 120 mm",
         id="svg no length",
     ),
     pytest.param(
@@ -397,3 +397,66 @@ def test_several_mistakes_are_told_at_once(tmp_path, monkeypatch):
         ["s.yaml:9", "vessel.branches.2.length"],
         ["s.yaml:9", "vessel.branches.2.diameter"],
     ]
+
+
+SEMICOLONS = "its columns are separated by semicolons; separate them by commas, and write decimals with a point"
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "told"),
+    [
+        ("polygon", "x [mm];y [mm]\n0,5;-2,5\n", f":1: vessel.file: {SEMICOLONS}"),
+        ("centreline", "x [mm];y [mm];radius [mm]\n0;0;3\n", f":1: vessel.file: {SEMICOLONS}"),
+        ("polygon", "x [mm]\ty [mm]\n0\t-2\n", SEMICOLONS.replace("semicolons", "tabs")),
+        ("polygon", "x [mm],y [mm]\n0,5,-2,5\n", "row has 4 cells, the header 2 (a decimal comma? write a point)"),
+        ("polygon", b"\x89PNG\r\n\x1a\n\x00\x00", "a.csv: is a binary file, not text"),
+        ("centreline", "x [mm],y [mm]\n".encode("utf-16"), "a.csv: is UTF-16 text; save it as UTF-8"),
+        ("polygon", b"x,y\n" + b"1,2\n" * 6_000_000, "a.csv: is larger than 20 MB"),
+        ("centreline", None, "a.csv: is a folder; a file is needed"),
+    ],
+    ids=["semicolons", "centreline semicolons", "tabs", "decimal commas", "binary", "utf-16", "huge", "folder"],
+)
+def test_files_that_other_programs_write(tmp_path, kind, text, told):
+    vessel = tmp_path / "a.csv"
+    if text is None:
+        vessel.mkdir()
+    else:
+        vessel.write_bytes(text if isinstance(text, bytes) else text.encode())
+    file = tmp_path / "s.yaml"
+    file.write_text(HEAD + f"vessel: {{kind: {kind}, file: a.csv}}\n", encoding="utf-8")
+    with pytest.raises(ScenarioError) as caught:
+        load_scenario(file)
+    assert told in str(caught.value)
+
+
+CHANNEL = "[[0 mm, -2 mm], [60 mm, -2 mm], [60 mm, 2 mm], [0 mm, 2 mm]]"
+
+
+@pytest.mark.parametrize(
+    ("changes", "told"),
+    [
+        ("vessel.open_edges=[1, 3]", []),
+        ("vessel.open_edges=[1]", ["through a wall of the vessel, at (0, 0) mm; if the vessel is open there, mark"]),
+        ("catheter.direction=90 deg", ["through a wall of the vessel, at (20, -2) mm"]),
+        ("catheter.exit=[30 mm, 0 mm]", []),
+        (
+            "vessel.points=[[0 mm, -20 mm], [60 mm, -20 mm], [60 mm, 20 mm], [0 mm, 20 mm]]",
+            ["is 40 mm wide, 111 times as wide as the wire; see whether the vessel's unit"],
+        ),
+    ],
+)
+def test_what_may_be_meant_but_is_seldom_so_is_warned_of(tmp_path, changes, told):
+    file = tmp_path / "s.yaml"
+    exit_x = 20 if "direction" in changes else 0
+    text = HEAD.replace("{bore", f"{{exit: [{exit_x} mm, 0 mm], bore") + (
+        f"vessel: {{kind: polygon, points: {CHANNEL}, open_edges: [1, 3]}}\n"
+    )
+    file.write_text(text, encoding="utf-8")
+    warnings = build(load_scenario(file, [changes])).warnings
+    assert len(warnings) == len(told)
+    assert all(part in warning for part, warning in zip(told, warnings, strict=True))
+
+
+@pytest.mark.parametrize("name", list_shipped())
+def test_the_shipped_scenarios_are_warned_of_nothing(name):
+    assert build(load_scenario(name)).warnings == ()

@@ -12,6 +12,7 @@ import pytest
 from scenes import scenario
 
 from gw_exudyn.errors import UsageError
+from gw_exudyn.metrics import metrics
 from gw_exudyn.result import Status
 from gw_exudyn.scenario import load_scenario
 from gw_exudyn.simulation import Simulation, simulate
@@ -159,6 +160,19 @@ def test_the_target_ends_the_run_only_if_it_is_to() -> None:
     assert np.hypot(ended.values("tip_x")[-1] - 10e-3, ended.values("tip_y")[-1]) <= 1e-3
     assert np.hypot(ended.values("tip_x")[-2] - 10e-3, ended.values("tip_y")[-2]) > 1e-3
     assert simulate(scenario(drive=drive, stop={"target": target})).status.status is Status.COMPLETED
+
+
+def test_a_branch_as_the_target_ends_the_run_where_the_tip_enters_it() -> None:
+    near = {"name": "near", "points": [[0.0, 0.0], [8e-3, 0.0]], "diameter": 4e-3}
+    far = {"name": "far", "points": [[8e-3, 0.0], [20e-3, 0.0]], "diameter": 4e-3}
+    drive = {"kind": "speed", "speed": 2e-3, "distance": 12e-3}
+    stop = {"target": {"branch": "far"}, "at_target": True}
+    ended = simulate(scenario(vessel={"kind": "branches", "branches": [near, far]}, drive=drive, stop=stop))
+    assert ended.status.status is Status.TARGET_REACHED
+    assert "branch far" in ended.status.sentence()
+    # One step of 0.2 mm at most beyond the end of the first branch.
+    assert 8e-3 < ended.values("tip_x")[-1] <= 8.21e-3
+    assert metrics(ended)["target_insertion_depth"].value == ended.values("insertion_depth")[-1]
 
 
 @pytest.fixture(scope="module", params=["force", "tip_speed"])
