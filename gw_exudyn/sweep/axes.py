@@ -168,7 +168,8 @@ def _spaced(path: str, form: str, raw: Any, kind: ValueKind, faults: Faults) -> 
         faults.add((form,), "both ends must be positive; they are the first and last value, not their logarithms")
         return None
     spaced = (np.linspace if form == "linspace" else np.geomspace)(first, last, count)
-    values = [round(float(x)) for x in spaced] if kind.whole else [float(x) for x in spaced]
+    # 0.3 and not 0.30000000000000004, so that a person can ask the data set for it.
+    values = [round(float(x)) if kind.whole else float(f"{x:.12g}") for x in spaced]
     return Axis(path, kind.unit, tuple(values), tuple(float(x) for x in values))
 
 

@@ -201,7 +201,8 @@ def _value_problems(study: Study) -> list[Problem]:
         try:
             study.scenario(point)
         except ScenarioError as error:
-            found.add(problem for problem in error.problems if any(_overlap(problem.path, path) for path in mine))
+            # Told at a value of the study: its own path may differ, where a branch is meant by its name.
+            found.add(p for p in error.problems if _AT not in p.message or any(_overlap(p.path, path) for path in mine))
     return found.all()
 
 
@@ -257,7 +258,8 @@ def _axes(form: StudyForm, source: YamlSource, problems: list[Problem]) -> list[
             axes.append(axis)
         if any(other != path and path.startswith(f"{other}.") for other in form.vary):
             faults.add(("vary", path), "a part of it is varied by another path; vary one of the two")
-    _check_form(form, axes, faults)
+    if not any(problem.path == "mode" for problem in problems):
+        _check_form(form, axes, faults)  # else it is not known what the mode needs
     try:
         faults.raise_if_any()
     except ValidationError as error:
@@ -288,7 +290,7 @@ def _check_form(form: StudyForm, axes: Sequence[Axis], faults: Faults) -> None:
     lengths = {axis.path: len(axis.values) for axis in axes if axis.distribution is None}
     if form.mode == "zip" and len(set(lengths.values())) > 1:
         told = ", ".join(f"{path} has {count}" for path, count in lengths.items())
-        faults.add(("mode",), f"mode: zip needs equally many values everywhere: {told}")
+        faults.add(("mode",), f"zip needs equally many values everywhere: {told}")
 
 
 def _check_sample(form: StudyForm, faults: Faults) -> None:
