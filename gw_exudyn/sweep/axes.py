@@ -67,6 +67,28 @@ def read_axis(path: str, raw: Any) -> Axis:
     return axis
 
 
+def axis_schema() -> dict[str, Any]:
+    """JSON schema of what may stand behind a path in `vary`."""
+    number = {"type": ["number", "string"]}
+
+    def form(name: str, inner: Mapping[str, Any], *further: tuple[str, Mapping[str, Any]]) -> dict[str, Any]:
+        properties = {name: inner, **dict(further)}
+        return {"type": "object", "properties": properties, "required": [name], "additionalProperties": False}
+
+    def row(*items: Mapping[str, Any]) -> dict[str, Any]:
+        return {"type": "array", "prefixItems": list(items), "minItems": len(items), "maxItems": len(items)}
+
+    listed = {"type": "array", "minItems": 1, "maxItems": MOST_VALUES}
+    forms = [form("values", listed, ("labels", {"type": "array", "items": {"type": "string"}}))]
+    forms += [form(name, row(number, number, {"type": "integer", "minimum": 1})) for name in SPACED]
+    ends = (("low", number), ("high", number))
+    forms += [
+        form(name, {**row(*(number for _ in words)), "description": describe(name)}, *ends)
+        for name, words in FORMS.items()
+    ]
+    return {"anyOf": [listed, {"const": CATALOGUE}, *forms]}
+
+
 def _known(path: str) -> ValueKind:
     try:
         return value_kind(path)

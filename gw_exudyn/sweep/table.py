@@ -24,8 +24,8 @@ NOT_RUN = "not_run"
 COMPLETED = "completed"
 
 _DECIMALS = 9
-"""Of output times in seconds. A time is the sum of the solver's steps, so that 25 s is 24.999999999999996 s in a run whose
-steps were halved on the way; and it is the same output."""
+"""Of output times in seconds. A time is the sum of the solver's steps: where some were cut, 25 s may come out as
+24.999999999999996 s, and is the same output."""
 
 
 @dataclass(frozen=True)
