@@ -293,6 +293,9 @@ def simulate(
             began = clock.perf_counter()
             going = simulation.advance(target)
             spent += clock.perf_counter() - began
+            if not going:
+                # A step that fails leaves the run at the step's start, before outputs on the way through it.
+                samples = [sample for sample in samples if sample["time"] < simulation.time]
             samples.append(dict(simulation.outputs))
             if progress is not None:
                 progress(simulation.time, simulation.duration, samples[-1])

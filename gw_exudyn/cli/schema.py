@@ -1,4 +1,4 @@
-"""`gw-exudyn schema`: the JSON schema of the scenario file, for editors and programs."""
+"""`gw-exudyn schema`: the JSON schemas of scenario and study files, for editors and programs."""
 
 from __future__ import annotations
 
@@ -12,18 +12,26 @@ from gw_exudyn.errors import StorageError
 
 
 @click.command(
-    short_help="Write the JSON schema of the scenario file.",
-    help="""Write the JSON schema of the scenario file to stdout, or to a file.
+    short_help="Write the JSON schema of the scenario file, or of the study file.",
+    help="""Write the JSON schema of the scenario file to stdout, or to a file; with --study that of the file that
+    sweep takes.
 
-    An editor with a YAML language server completes and checks a scenario that begins with the line
+    An editor with a YAML language server completes and checks a file that begins with the line
     '# yaml-language-server: $schema=schema.json'.""",
 )
 @click.option("--output", "-o", metavar="FILE", help="Write to this file instead of stdout.")
-def command(output: str | None) -> int:
+@click.option("--study", is_flag=True, help="The schema of study files, which sweep takes.")
+def command(output: str | None, study: bool) -> int:
     """Write the schema."""
-    from gw_exudyn.scenario import json_schema
+    if study:
+        from gw_exudyn.sweep.study import study_schema
 
-    text = json.dumps(json_schema(), indent=2)
+        schema = study_schema()
+    else:
+        from gw_exudyn.scenario import json_schema
+
+        schema = json_schema()
+    text = json.dumps(schema, indent=2)
     if output is None:
         put(text)
         return 0

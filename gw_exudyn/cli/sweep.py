@@ -120,7 +120,8 @@ def _show_plan(study: Study, plan: Plan, folder: Path, chosen: Options, as_json:
         )
         return 0
     missing = set(plan.missing)
-    rows = [("point", "id", *(axis.path for axis in study.design.axes), "")]
+    heads = [axis.path if axis.unit in (None, "1") else f"{axis.path} [{axis.unit}]" for axis in study.design.axes]
+    rows = [("point", "id", *heads, "")]
     for point, found in enumerate(plan.ids):
         labels = [label if isinstance(label, str) else f"{label:.6g}" for label in study.design.labels(point).values()]
         state = "to run" if point in missing else "done" if plan.first[found] == point else f"as {plan.first[found]}"
@@ -143,7 +144,8 @@ def _tell(summary: Summary, quiet: bool) -> None:
         tell(f"interrupted with {left} points left; the same command goes on")
     if not quiet:
         earlier = f", {summary.earlier} of them before" if summary.earlier else ""
-        tell(f"{summary.completed} points completed, {summary.failed} failed{earlier}: {summary.folder}")
+        again = "; --retry-failed runs these again" if summary.failed and not summary.interrupted else ""
+        tell(f"{summary.completed} points completed, {summary.failed} failed{earlier}: {summary.folder}{again}")
 
 
 def _as_json(summary: Summary) -> dict[str, Any]:

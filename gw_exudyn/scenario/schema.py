@@ -282,8 +282,13 @@ def with_places(scenario: Scenario, places: Mapping[str, Place]) -> Scenario:
 
 def json_schema() -> dict[str, Any]:
     """JSON schema of a scenario file: quantities may be numbers in SI or text with a unit."""
-    schema = Scenario.model_json_schema(mode="validation")
-    described = {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "title": "gw-exudyn scenario"}
+    return schema_of(Scenario, "gw-exudyn scenario")
+
+
+def schema_of(section: type[Section], title: str) -> dict[str, Any]:
+    """JSON schema of a file that a section describes."""
+    schema = section.model_json_schema(mode="validation")
+    described = {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema, "title": title}
     _strip_docstring_sections(described)
     return described
 

@@ -67,6 +67,28 @@ def read_axis(path: str, raw: Any) -> Axis:
     return axis
 
 
+def axis_schema() -> dict[str, Any]:
+    """JSON schema of what may stand behind a path in `vary`."""
+    number = {"type": ["number", "string"]}
+
+    def form(name: str, inner: Mapping[str, Any], *further: tuple[str, Mapping[str, Any]]) -> dict[str, Any]:
+        properties = {name: inner, **dict(further)}
+        return {"type": "object", "properties": properties, "required": [name], "additionalProperties": False}
+
+    def row(*items: Mapping[str, Any]) -> dict[str, Any]:
+        return {"type": "array", "prefixItems": list(items), "minItems": len(items), "maxItems": len(items)}
+
+    listed = {"type": "array", "minItems": 1, "maxItems": MOST_VALUES}
+    forms = [form("values", listed, ("labels", {"type": "array", "items": {"type": "string"}}))]
+    forms += [form(name, row(number, number, {"type": "integer", "minimum": 1})) for name in SPACED]
+    ends = (("low", number), ("high", number))
+    forms += [
+        form(name, {**row(*(number for _ in words)), "description": describe(name)}, *ends)
+        for name, words in FORMS.items()
+    ]
+    return {"anyOf": [listed, {"const": CATALOGUE}, *forms]}
+
+
 def _known(path: str) -> ValueKind:
     try:
         return value_kind(path)
@@ -168,7 +190,8 @@ def _spaced(path: str, form: str, raw: Any, kind: ValueKind, faults: Faults) -> 
         faults.add((form,), "both ends must be positive; they are the first and last value, not their logarithms")
         return None
     spaced = (np.linspace if form == "linspace" else np.geomspace)(first, last, count)
-    values = [round(float(x)) for x in spaced] if kind.whole else [float(x) for x in spaced]
+    # 0.3 and not 0.30000000000000004, so that a person can ask the data set for it.
+    values = [round(float(x)) if kind.whole else float(f"{x:.12g}") for x in spaced]
     return Axis(path, kind.unit, tuple(values), tuple(float(x) for x in values))
 
 

@@ -76,7 +76,9 @@ def _looks(study: Study, points: Any) -> tuple[list[Any], list[str], dict[str, A
     legend: dict[str, Any] = {"colour": text, "styles": {}}
     if by_colour.unit is None:
         known = list(dict.fromkeys(words))
-        legend["words"] = {word: RESULT_COLOURS[i % len(RESULT_COLOURS)] for i, word in enumerate(known)}
+        few_words = len(known) <= len(RESULT_COLOURS)
+        palette = RESULT_COLOURS if few_words else [colormaps["tab20"](i) for i in range(20)]
+        legend["words"] = {word: palette[i % len(palette)] for i, word in enumerate(known)}
         colours: list[Any] = [legend["words"][word] for word in words]
     else:
         norm = Normalize(float(values.min()), float(values.max()))

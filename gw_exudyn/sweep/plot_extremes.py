@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gw_exudyn.metrics import metrics
-from gw_exudyn.sweep.plot_scales import metric_words
+from gw_exudyn.sweep.plot_scales import metric_words, value_words
 from gw_exudyn.sweep.study import Study
 
 if TYPE_CHECKING:
@@ -29,10 +29,11 @@ def _titled(name: str, result: Result, study: Study) -> Result:
     """The result under a name that tells the metric and the parameters."""
     metric = study.metrics[0]
     parameters = result.provenance["point"]["parameters"]
-    told = [f"{path.rpartition('.')[2]} {_text(value)}" for path, value in parameters.items()]
+    units = {axis.path: axis.unit or "1" for axis in study.design.axes}
+    told = [f"{path.rpartition('.')[2].replace('_', ' ')} {_text(units[path], v)}" for path, v in parameters.items()]
     title = f"{name}: {metric_words(metric, metrics(result)[metric].value)}\n{', '.join(told)}"
     return dataclasses.replace(result, scenario=result.scenario.model_copy(update={"name": title}))
 
 
-def _text(value: float | str) -> str:
-    return value if isinstance(value, str) else f"{value:.4g}"
+def _text(unit: str, value: float | str) -> str:
+    return value if isinstance(value, str) else value_words(unit, value)

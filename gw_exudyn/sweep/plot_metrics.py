@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gw_exudyn.plots.style import BLUE, NOTE_COLOUR, VERMILLION, new_figure, tidy
 from gw_exudyn.result import Floats
+from gw_exudyn.sweep.axes import Axis
 from gw_exudyn.sweep.plot_scales import COLOUR_MAP, axis_scaled, metric_scaled
 from gw_exudyn.sweep.study import Study
 from gw_exudyn.sweep.table import Table
@@ -62,7 +64,8 @@ def plot_map(study: Study, table: Table) -> Figure:
     up, right = design.axes
     y_text, _, y_words = axis_scaled(up, list(up.labels))
     x_text, _, x_words = axis_scaled(right, list(right.labels))
-    figure = new_figure(1.0 + 4.6 * len(metrics), 1.6 + min(6.0, 0.55 * len(y_words) + 1.5))
+    wide = float(np.clip(1.2 + 0.55 * len(x_words), 4.6, 9.0))  # so that the numbers find room in their cells
+    figure = new_figure(1.0 + wide * len(metrics), 1.6 + min(6.0, 0.55 * len(y_words) + 1.5))
     panels = figure.subplots(1, len(metrics), sharey=True, squeeze=False)[0]
     for axes, name in zip(panels, metrics, strict=True):
         label, values = metric_scaled(name, good_values(study, table, name).reshape(design.shape))
@@ -123,20 +126,33 @@ def plot_matrix(study: Study, table: Table) -> Figure:
             image = image or drawn
             if row != column:
                 axes.scatter(x[~table.good], y[~table.good], marker="x", color=VERMILLION, s=size)
-            _label_panel(axes, columns, label, row, column, count)
+            _label_panel(axes, columns, axes_drawn, label, row, column)
     if image is not None:
         figure.colorbar(image, ax=panels, label=label, shrink=0.6)
     _title(figure, study, "x: failed" if not table.good.all() else "")
     return figure
 
 
-def _label_panel(axes: Axes, columns: list[Any], metric: str, row: int, column: int, count: int) -> None:
+def _label_panel(
+    axes: Axes, columns: list[Any], parameters: Sequence[Axis], metric: str, row: int, column: int
+) -> None:
+    named = [parameter.unit is None for parameter in parameters]
     x_text, y_text = columns[column][0], columns[row][0] if row != column else metric
-    if row == count - 1:
+    if row == len(columns) - 1:
         axes.set_xlabel(x_text, fontsize=8)
     if column == 0 or row == column:
         axes.set_ylabel(y_text, fontsize=8)
     axes.tick_params(labelsize=7)
+    if named[column]:
+        _words_at_ticks(axes.set_xticks, columns[column], rotation=20, ha="right")
+    if named[row] and row != column:
+        _words_at_ticks(axes.set_yticks, columns[row])
+
+
+def _words_at_ticks(put: Any, column: Any, **turned: Any) -> None:
+    """The words of a parameter that is no number at its ticks."""
+    known = dict(zip(column[1], column[2], strict=True))
+    put(list(known), list(known.values()), fontsize=7, **turned)
 
 
 def _title(figure: Figure, study: Study, further: str = "") -> None:

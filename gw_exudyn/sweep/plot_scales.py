@@ -45,10 +45,14 @@ def metric_scaled(name: str, values: Floats) -> tuple[str, Floats]:
 
 def metric_words(name: str, value: float) -> str:
     """A metric and its value in words: `push force max 20.7 mN`."""
-    unit = metric_table()[name].unit
+    return f"{name.replace('_', ' ')} {value_words(metric_table()[name].unit, value)}"
+
+
+def value_words(unit: str, value: float) -> str:
+    """A value in SI in words: `20.7 mN`."""
     shown_unit, factor = shown(_LIKE[unit], np.array([value])) if unit in _LIKE else (unit, 1.0)
     number = f"{value * factor:.3g}"
-    return f"{name.replace('_', ' ')} {number if shown_unit == '1' else f'{number} {plain(shown_unit)}'}"
+    return number if shown_unit == "1" else f"{number} {plain(shown_unit)}"
 
 
 def axis_name(axis: Axis) -> str:

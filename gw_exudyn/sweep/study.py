@@ -18,10 +18,11 @@ from gw_exudyn.scenario.fields import Choice, Faults, Kind, Section, Table, Text
 from gw_exudyn.scenario.loading import name_from, scenario_from_source
 from gw_exudyn.scenario.overrides import OVERRIDE, split_override
 from gw_exudyn.scenario.problems import in_order, problems_of
+from gw_exudyn.scenario.schema import schema_of
 from gw_exudyn.scenario.shipped import resolve, shipped_folder
 from gw_exudyn.scenario.words import did_you_mean, nearest, shown
 from gw_exudyn.scenario.yaml_source import Place, YamlSource, read_yaml
-from gw_exudyn.sweep.axes import Axis, read_axis
+from gw_exudyn.sweep.axes import Axis, axis_schema, read_axis
 from gw_exudyn.sweep.design import FOR_INDICES, METHODS, MOST_POINTS, Design, count_of, grid, sampled, zipped
 from gw_exudyn.sweep.metric_names import metric_names
 from gw_exudyn.sweep.point_list import read_points
@@ -39,8 +40,11 @@ _NONE = "-"
 """Stands for a base that the file does not give, which is told already."""
 
 
+@dataclass(frozen=True)
 class Paths(Kind):
-    """A mapping of dotted paths."""
+    """A mapping of dotted paths. values : JSON schema of what may stand behind a path."""
+
+    values: Mapping[str, Any] = field(default_factory=dict)
 
     def read(self, value: Any) -> dict[str, Any]:
         """The mapping, as it is."""
@@ -49,8 +53,8 @@ class Paths(Kind):
         return dict(value)
 
     def json(self) -> dict[str, Any]:
-        """An object."""
-        return {"type": "object"}
+        """An object of such values."""
+        return {"type": "object", "additionalProperties": dict(self.values)} if self.values else {"type": "object"}
 
 
 class StudyForm(Section):
@@ -58,18 +62,39 @@ class StudyForm(Section):
 
     what: ClassVar[str] = "a study"
 
-    name: Annotated[str | None, Text("name", optional=True)] = None
+    name: Annotated[str | None, Text("name", optional=True)] = Field(
+        default=None, description="name of the study and of its folder; the file's name if not given"
+    )
     base: Annotated[str, Text("scenario")] = Field(
         description="the scenario that is varied: a file, or a shipped one's name", examples=["corner90-universal"]
     )
-    fixed: Annotated[dict[str, Any], Paths()] = Field(default_factory=dict, alias="set")
-    vary: Annotated[dict[str, Any], Paths()] = Field(default_factory=dict)
-    points: Annotated[str | None, Text("name of a CSV file", optional=True)] = None
-    mode: Annotated[str, Choice(MODES)] = "grid"
-    samples: Annotated[int | None, Whole(1, MOST_POINTS)] = None
-    method: Annotated[str, Choice(METHODS)] = "latin-hypercube"
-    seed: Annotated[int, Whole(0, 2**31 - 1)] = 0
-    metrics: Annotated[tuple[str, ...], Table(Text("metric"), 1, 200, "metric")] = ("push_force_max",)
+    fixed: Annotated[dict[str, Any], Paths()] = Field(
+        default_factory=dict, alias="set", description="dotted paths of the scenario: their values in all points"
+    )
+    vary: Annotated[dict[str, Any], Paths(axis_schema())] = Field(
+        default_factory=dict, description="dotted paths of the scenario: the values they take, or their distributions"
+    )
+    points: Annotated[str | None, Text("name of a CSV file", optional=True)] = Field(
+        default=None, description="mode list: a CSV file with a row a point, headed by dotted paths"
+    )
+    mode: Annotated[str, Choice(MODES)] = Field(
+        default="grid",
+        description="grid: all combinations; zip: first values, second values, ...; list: the rows of "
+        "a CSV file; sample: drawn at random",
+    )
+    samples: Annotated[int | None, Whole(1, MOST_POINTS)] = Field(
+        default=None, description="mode sample: how many points are drawn"
+    )
+    method: Annotated[str, Choice(METHODS)] = Field(
+        default="latin-hypercube", description="mode sample: how points are drawn"
+    )
+    seed: Annotated[int, Whole(0, 2**31 - 1)] = Field(
+        default=0, description="mode sample: the same seed draws the same points"
+    )
+    metrics: Annotated[tuple[str, ...], Table(Text("metric"), 1, 200, "metric")] = Field(
+        default=("push_force_max",),
+        description="what figures and indices are about; by the first, the smallest is the best",
+    )
 
     @field_validator("name", mode="after")
     @classmethod
@@ -89,6 +114,11 @@ class StudyForm(Section):
                 faults.add((i,), f"{shown(name)} is no metric of a run; {hint}known: {', '.join(metric_names())}")
         faults.raise_if_any()
         return metrics
+
+
+def study_schema() -> dict[str, Any]:
+    """JSON schema of a study file."""
+    return schema_of(StudyForm, "gw-exudyn study")
 
 
 @dataclass(frozen=True)
@@ -201,7 +231,8 @@ def _value_problems(study: Study) -> list[Problem]:
         try:
             study.scenario(point)
         except ScenarioError as error:
-            found.add(problem for problem in error.problems if any(_overlap(problem.path, path) for path in mine))
+            # Told at a value of the study: its own path may differ, where a branch is meant by its name.
+            found.add(p for p in error.problems if _AT not in p.message or any(_overlap(p.path, path) for path in mine))
     return found.all()
 
 
@@ -257,7 +288,8 @@ def _axes(form: StudyForm, source: YamlSource, problems: list[Problem]) -> list[
             axes.append(axis)
         if any(other != path and path.startswith(f"{other}.") for other in form.vary):
             faults.add(("vary", path), "a part of it is varied by another path; vary one of the two")
-    _check_form(form, axes, faults)
+    if not any(problem.path == "mode" for problem in problems):
+        _check_form(form, axes, faults)  # else it is not known what the mode needs
     try:
         faults.raise_if_any()
     except ValidationError as error:
@@ -288,7 +320,7 @@ def _check_form(form: StudyForm, axes: Sequence[Axis], faults: Faults) -> None:
     lengths = {axis.path: len(axis.values) for axis in axes if axis.distribution is None}
     if form.mode == "zip" and len(set(lengths.values())) > 1:
         told = ", ".join(f"{path} has {count}" for path, count in lengths.items())
-        faults.add(("mode",), f"mode: zip needs equally many values everywhere: {told}")
+        faults.add(("mode",), f"zip needs equally many values everywhere: {told}")
 
 
 def _check_sample(form: StudyForm, faults: Faults) -> None:

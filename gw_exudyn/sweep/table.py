@@ -23,6 +23,10 @@ TABLE = "sweep.csv"
 NOT_RUN = "not_run"
 COMPLETED = "completed"
 
+_DECIMALS = 9
+"""Of output times in seconds. A time is the sum of the solver's steps: where some were cut, 25 s may come out as
+24.999999999999996 s, and is the same output."""
+
 
 @dataclass(frozen=True)
 class Table:
@@ -112,8 +116,8 @@ class _Times:
             lines = (folder / SERIES).read_text(encoding="utf-8").splitlines()[1:]
         except FileNotFoundError:
             return
-        column = [line.partition(",")[0] for line in (lines if whole else lines[:-1])]
-        text = "".join(f"{time}," for time in column)
+        column = [float(line.partition(",")[0]) for line in (lines if whole else lines[:-1])]
+        text = "".join(f"{round(time, _DECIMALS)}," for time in column)
         if not any(known.startswith(text) for known in self._texts):
             self._texts = [known for known in self._texts if not text.startswith(known)] + [text]
 
@@ -124,11 +128,12 @@ class _Times:
 
 
 def read_series(folder: Path) -> dict[str, Floats] | None:
-    """The columns of a point's series.csv by name, in SI; None where there is none."""
+    """The columns of a point's series.csv by name, in SI, times to the nanosecond; None where there is none."""
     try:
         head, *lines = (folder / SERIES).read_text(encoding="utf-8").splitlines()
     except FileNotFoundError:
         return None
     names = [name.partition(" ")[0] for name in head.split(",")]
     rows = np.array([line.split(",") for line in lines], dtype=float).reshape(len(lines), len(names))
-    return {name: rows[:, i] for i, name in enumerate(names)}
+    columns = {name: rows[:, i] for i, name in enumerate(names)}
+    return {**columns, "time": np.round(columns["time"], _DECIMALS)}

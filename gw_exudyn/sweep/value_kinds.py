@@ -31,7 +31,9 @@ def value_kind(path: str) -> ValueKind:
         nodes = [child for option in options for child in _children(option, part)]
         if not nodes:
             known = sorted({key for option in options for key in option.get("properties", {})})
-            allowed = f"allowed there: {', '.join(known)}" if known else f"{reached} has no parts"
+            listed = any("items" in option or "prefixItems" in option for option in options)
+            parts = f"{reached} is a list; give an item's number, from 0" if listed else f"{reached} has no parts"
+            allowed = f"allowed there: {', '.join(known)}" if known else parts
             raise LookupError(f"no scenario has this value; {did_you_mean(part, known)}{allowed}")
         reached = f"{reached}.{part}".lstrip(".")
     return _kind([option for node in nodes for option in _options(node)])
@@ -57,12 +59,15 @@ def _options(node: Node) -> Iterator[Node]:
 def _children(node: Node, part: str) -> Iterator[Node]:
     if part in node.get("properties", {}):
         yield node["properties"][part]
+    items = node.get("items")
     if part.isascii() and part.isdigit():
         fixed = node.get("prefixItems", ())
         if int(part) < len(fixed):
             yield fixed[int(part)]
-        elif isinstance(node.get("items"), Mapping):
-            yield node["items"]
+        elif isinstance(items, Mapping):
+            yield items
+    elif isinstance(items, Mapping) and any("name" in option.get("properties", {}) for option in _options(items)):
+        yield items  # an item by its name; whether there is one of that name is for the scenario to say
 
 
 def _kind(options: list[Node]) -> ValueKind:

@@ -6,8 +6,10 @@ import json
 from pathlib import Path
 
 import pytest
+import yaml
 
 from gw_exudyn.scenario import list_shipped, load_scenario, scenario_from_dict
+from gw_exudyn.scenario.shipped import shipped_folder
 
 FIVE_MISTAKES = """\
 name: five
@@ -191,3 +193,23 @@ def test_schema_goes_to_stdout_or_to_a_file(gw):
 
 def test_a_schema_that_cannot_be_written_ends_with_7(gw):
     assert gw("schema", "-o", "nowhere/schema.json").code == 7
+
+
+def test_the_schema_of_studies_names_their_keys_modes_and_distributions(gw):
+    schema = json.loads(gw("schema", "--study").out)
+    assert (schema["title"], schema["required"]) == ("gw-exudyn study", ["base"])
+    assert schema["properties"]["mode"]["enum"] == ["grid", "zip", "list", "sample"]
+    values = schema["properties"]["vary"]["additionalProperties"]["anyOf"]
+    forms = {key for value in values for key in value.get("properties", {})}
+    assert forms >= {"values", "linspace", "logspace", "normal", "triangular"}
+
+
+def test_the_schema_of_studies_takes_the_shipped_one_and_no_mistakes(gw):
+    schema = json.loads(gw("schema", "--study").out)
+    jsonschema = pytest.importorskip("jsonschema")
+    check = jsonschema.Draft202012Validator(schema)
+    study = yaml.safe_load((shipped_folder() / "studies" / "friction-and-wire.yaml").read_text())
+    check.validate(study)
+    spaced = {"logspace": [1, 2]}
+    for wrong in ({"mode": "gird"}, {"seed": -1}, {"varied": {}}, {"vary": {"wire.segments": spaced}}):
+        assert not check.is_valid({**study, **wrong}), wrong

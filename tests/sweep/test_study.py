@@ -41,6 +41,41 @@ def test_spaced_values_have_the_parameters_unit_and_kind(study):
     assert [found.scenario(point).wire.segments for point in range(4)] == [5, 7, 9, 11]
 
 
+def test_linspace_gives_the_numbers_that_a_person_would_write(study):
+    found = study("contact.friction_coefficient: {linspace: [0.1, 0.5, 5]}")
+    assert column(found, "contact.friction_coefficient") == [0.1, 0.2, 0.3, 0.4, 0.5]
+
+
+def test_branches_are_varied_by_name(study):
+    vary = "vessel.branches.left.angle: [50 deg, 60 deg]"
+    found = study(vary, base="phantom-universal", set="{wire.segments: 50}")
+    assert found.design.axes[0].unit == "rad"
+    angles = [found.scenario(point).vessel.branches[1].angle for point in (0, 1)]
+    assert angles == pytest.approx(np.deg2rad([50, 60]))
+
+
+def test_what_is_wrong_with_branches_is_told_beside_the_rest(write_study):
+    vary = (
+        "vessel.branches.leff.angle: [50 deg]\n"
+        "vessel.branches.left.angle: [7 N]\n"
+        "vessel.branches.left.angel: [1]\n"
+        "vessel.branches.angle: [1]\n"
+        "contact.friction_coefficient: []"
+    )
+    told = problems_of(write_study(vary, base="phantom-universal", set="{wire.segments: 50}"))
+    assert [line.partition(":")[0] for line in told] == ["4", "5", "6", "7", "8"]
+    assert "by name trunk, left, right, target, upper" in told[0]
+    assert "is a force, not an angle" in told[1]
+    assert "did you mean 'angle'?" in told[2]
+
+
+def test_a_mode_that_does_not_exist_is_told_alone(write_study):
+    vary = "wire.segments: [5, 6]\ncontact.friction_coefficient: {uniform: [0.1, 0.2]}"
+    told = problems_of(write_study(vary, mode="sampel", samples=12, set="{}"))
+    assert len(told) == 1
+    assert told[0].startswith("3: mode: 'sampel' is not known here; did you mean 'sample'?")
+
+
 def test_wires_of_the_catalogue_and_labelled_parts_of_a_scenario(study):
     tips = "wire.tip_shape:\n  values: [{kind: straight}, {kind: arc, length: 5 mm, angle: 30 deg}]\n"
     found = study(f"wire.model: catalogue\n{tips}  labels: [straight, curved]")

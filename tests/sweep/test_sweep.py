@@ -67,6 +67,31 @@ def test_points_that_fail_cost_themselves_alone_and_are_run_again_on_demand(stud
     assert manifests()[table[0]["id"]] == before[table[0]["id"]]
 
 
+def test_a_run_that_does_not_converge_is_one_failed_point(study):
+    vary = "solver.step: [50 ms, 0.5 s]\nsolver.minimum_step: [1 us, 0.5 s]"
+    wire = (
+        "{wire.model: amplatz-super-stiff, wire.segments: 60, contact.friction_coefficient: 0.6, drive.distance: 2 mm}"
+    )
+    summary = run_sweep(study(vary, base="phantom-universal", mode="zip", set=wire), OUT, PLAIN)
+    assert (summary.completed, summary.failed) == (1, 1)
+    assert [row["status"] for row in rows()] == ["completed", "not_converged"]
+    assert "no balance of forces" in rows()[1]["reason"]
+
+
+def test_times_that_differ_by_their_last_digit_are_the_same(study):
+    found = study()
+    run_sweep(found, OUT, PLAIN)
+    series = OUT / "points" / rows()[1]["id"] / "series.csv"
+    text = series.read_text()
+    assert "\n1.5," in text
+    series.write_text(text.replace("\n1.5,", "\n1.4999999999999998,"))
+    run_sweep(found, OUT, PLAIN)
+    with xr.open_dataset(OUT / "sweep.nc") as data:
+        assert data["push_force"].dims == ("contact_friction_coefficient", "time")
+        assert 1.5 in data["time"].values
+        assert np.isfinite(data["push_force"].values).all()
+
+
 def test_a_grid_is_a_data_set_with_its_parameters_as_dimensions(study):
     found = study("wire.diameter: [0.3 mm, 0.36 mm]\ncontact.friction_coefficient: [0.1, 0.2, 0.4]")
     run_sweep(found, OUT, dataclasses.replace(PLAIN, jobs=2, keep_runs=True))

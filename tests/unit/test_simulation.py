@@ -12,6 +12,7 @@ from scenes import scenario
 from gw_exudyn.errors import ScenarioError, UsageError
 from gw_exudyn.quantities import CONTACT_FIELDS, JOINT_FIELDS, NODE_FIELDS, SCALARS
 from gw_exudyn.result import Status
+from gw_exudyn.scenario import load_scenario
 from gw_exudyn.simulation import Simulation, output_times, simulate
 
 IN_CONTACT = 11.0
@@ -237,3 +238,18 @@ def test_output_times_end_at_the_end() -> None:
     assert output_times(odd) == pytest.approx([0.1, 0.2, 0.25])
     even = scenario(drive={"kind": "speed", "speed": 2e-3, "duration": 0.3}, output={"interval": 0.1})
     assert output_times(even) == pytest.approx([0.1, 0.2, 0.3])
+
+
+def test_a_step_that_fails_after_outputs_on_its_way_ends_the_run_as_not_converged() -> None:
+    overrides = {
+        "wire.model": "amplatz-super-stiff",
+        "wire.segments": 60,
+        "contact.friction_coefficient": 0.6,
+        "drive.distance": 2e-3,
+        "solver.step": 0.5,
+        "solver.minimum_step": 0.5,
+    }
+    result = simulate(load_scenario("phantom-universal", overrides))
+    assert result.status.status is Status.NOT_CONVERGED
+    assert (np.diff(result.time) > 0).all()
+    assert result.time[-1] == result.status.time
