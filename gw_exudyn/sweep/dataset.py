@@ -16,7 +16,6 @@ from gw_exudyn.quantities import QUANTITIES, SERIES_COLUMNS
 from gw_exudyn.result import Floats
 from gw_exudyn.sweep.axes import Axis
 from gw_exudyn.sweep.folder import SweepFolder, as_storage_error
-from gw_exudyn.sweep.metric_names import metric_table
 from gw_exudyn.sweep.run import Plan
 from gw_exudyn.sweep.study import Study
 from gw_exudyn.sweep.table import Table, read_series
@@ -58,7 +57,7 @@ def write_dataset(study: Study, plan: Plan, place: SweepFolder, table: Table) ->
     """
     times = common_times(table)
     length = len(times) if times is not None else len(table.times[0])
-    _check_room(place.path, len(plan.ids), length)
+    _check_room(place.path, len(plan.ids), length, len(study.metric_table))
     part = place.path / f".{DATASET}.part"
     with as_storage_error(place.path):
         try:
@@ -70,10 +69,10 @@ def write_dataset(study: Study, plan: Plan, place: SweepFolder, table: Table) ->
         os.replace(part, place.path / DATASET)
 
 
-def _check_room(folder: Path, points: int, length: int) -> None:
+def _check_room(folder: Path, points: int, length: int, metrics: int) -> None:
     """HDF5 does not get over a disk that fills up while it writes; so its room is made sure of before."""
     # Random numbers shrink to nine tenths at worst; time series to much less.
-    needed = 8 * points * (length * len(CURVES) + len(metric_table()) + 10) + 1_000_000
+    needed = 8 * points * (length * len(CURVES) + metrics + 10) + 1_000_000
     free = shutil.disk_usage(folder).free
     if free < needed:
         raise StorageError(
@@ -104,7 +103,7 @@ def _write(
         _put(file, "trusted", dims, table.good.astype(np.int8).reshape(design.shape), attrs)
         attrs = {"units": "s", "long_name": "time of the solution on the clock", **further}
         _put(file, "wall_time", dims, table.wall_time.reshape(design.shape), attrs)
-        for name, metric in metric_table().items():
+        for name, metric in study.metric_table.items():
             attrs = {"units": metric.unit, "long_name": metric.meaning, **further}
             _put(file, f"{METRIC}{name}", dims, table.metrics[name].reshape(design.shape), attrs)
         if times is not None:

@@ -31,7 +31,7 @@ def _titled(name: str, result: Result, study: Study) -> Result:
     parameters = result.provenance["point"]["parameters"]
     units = {axis.path: axis.unit or "1" for axis in study.design.axes}
     told = [f"{path.rpartition('.')[2].replace('_', ' ')} {_text(units[path], v)}" for path, v in parameters.items()]
-    title = f"{name}: {metric_words(metric, metrics(result)[metric].value)}\n{', '.join(told)}"
+    title = f"{name}: {metric_words(study, metric, metrics(result)[metric].value)}\n{', '.join(told)}"
     return dataclasses.replace(result, scenario=result.scenario.model_copy(update={"name": title}))
 
 

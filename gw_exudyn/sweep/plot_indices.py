@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gw_exudyn.plots.style import BLUE, ORANGE, new_figure, tidy
-from gw_exudyn.sweep.metric_names import metric_table
 from gw_exudyn.sweep.plot_scales import scaled
 from gw_exudyn.sweep.sensitivity import Index, indices
 from gw_exudyn.sweep.study import Study
@@ -30,7 +29,7 @@ def plot_indices(study: Study, table: Table) -> Figure | None:
     found: dict[str, list[Index]] = {}
     for metric in study.metrics[:_MOST_PANELS]:
         try:
-            found[metric], _ = indices(study, table, metric, metric_table()[metric].unit)
+            found[metric], _ = indices(study, table, metric, study.metric_table[metric].unit)
         except ValueError:
             continue  # told already, when they were written
     if not found:

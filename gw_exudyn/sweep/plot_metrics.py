@@ -39,7 +39,7 @@ def plot_response(study: Study, table: Table) -> Figure:
     order = np.argsort(x, kind="stable")
     for axes, name in zip(panels, metrics, strict=True):
         tidy(axes)
-        label, values = metric_scaled(name, good_values(study, table, name))
+        label, values = metric_scaled(study, name, good_values(study, table, name))
         line = "o" if study.mode == "sample" or axis.unit is None else "o-"
         axes.plot(x[order], values[order], line, color=BLUE, markersize=4, linewidth=1.3)
         _mark_failed(axes, x[~table.good])
@@ -68,7 +68,7 @@ def plot_map(study: Study, table: Table) -> Figure:
     figure = new_figure(1.0 + wide * len(metrics), 1.6 + min(6.0, 0.55 * len(y_words) + 1.5))
     panels = figure.subplots(1, len(metrics), sharey=True, squeeze=False)[0]
     for axes, name in zip(panels, metrics, strict=True):
-        label, values = metric_scaled(name, good_values(study, table, name).reshape(design.shape))
+        label, values = metric_scaled(study, name, good_values(study, table, name).reshape(design.shape))
         image = axes.imshow(np.ma.masked_invalid(values), cmap=COLOUR_MAP, origin="lower", aspect="auto")
         figure.colorbar(image, ax=axes, label=label)
         _write_cells(axes, values, image)
@@ -109,7 +109,7 @@ def plot_matrix(study: Study, table: Table) -> Figure:
     count = len(axes_drawn)
     rows = [study.design.labels(point) for point in range(len(study))]
     columns = [axis_scaled(axis, [row[axis.path] for row in rows]) for axis in axes_drawn]
-    label, values = metric_scaled(name, good_values(study, table, name))
+    label, values = metric_scaled(study, name, good_values(study, table, name))
     figure = new_figure(1.6 + 2.5 * count, 1.0 + 2.3 * count)
     panels = figure.subplots(count, count, squeeze=False)
     size = float(np.clip(3000 / max(len(study), 1), 3, 25))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,7 +11,9 @@ from gw_exudyn.plots.style import axis_label, shown
 from gw_exudyn.quantities import plain
 from gw_exudyn.result import Floats
 from gw_exudyn.sweep.axes import Axis
-from gw_exudyn.sweep.metric_names import metric_table
+
+if TYPE_CHECKING:
+    from gw_exudyn.sweep.study import Study
 
 COLOUR_MAP = "cividis"
 """Told apart with any colour vision, and in grey."""
@@ -38,14 +41,14 @@ def scaled(text: str, unit: str, values: Floats) -> tuple[str, Floats]:
     return axis_label(text, name), values * factor
 
 
-def metric_scaled(name: str, values: Floats) -> tuple[str, Floats]:
+def metric_scaled(study: Study, name: str, values: Floats) -> tuple[str, Floats]:
     """Label and values of a metric as an axis shows them."""
-    return scaled(name.replace("_", " "), metric_table()[name].unit, values)
+    return scaled(name.replace("_", " "), study.metric_table[name].unit, values)
 
 
-def metric_words(name: str, value: float) -> str:
+def metric_words(study: Study, name: str, value: float) -> str:
     """A metric and its value in words: `push force max 20.7 mN`."""
-    return f"{name.replace('_', ' ')} {value_words(metric_table()[name].unit, value)}"
+    return f"{name.replace('_', ' ')} {value_words(study.metric_table[name].unit, value)}"
 
 
 def value_words(unit: str, value: float) -> str:

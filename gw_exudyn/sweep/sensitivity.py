@@ -125,14 +125,13 @@ def _morris(axes: Sequence[Axis], cube: Floats, values: Floats, seed: int) -> di
 
 def write_indices(study: Study, table: Table, place: SweepFolder, summary: Summary) -> None:
     """Write sensitivity.csv with the indices of all metrics of the study, and say in `summary` what is missing."""
-    from gw_exudyn.sweep.metric_names import metric_table
 
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(["metric", "parameter", "index", "value", "confidence_95", "unit", "meaning"])
     for metric in study.metrics:
         try:
-            found, left_out = indices(study, table, metric, metric_table()[metric].unit)
+            found, left_out = indices(study, table, metric, study.metric_table[metric].unit)
         except ValueError as error:
             summary.notes.append(f"no sensitivity of {metric}: {error}")
             continue

@@ -6,13 +6,14 @@ import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, cast
 
 from pydantic import Field, ValidationError, field_validator
 
 from gw_exudyn.errors import Problem, ScenarioError
+from gw_exudyn.metrics import Metric
 from gw_exudyn.scenario import Scenario
 from gw_exudyn.scenario.fields import Choice, Faults, Kind, Section, Table, Text, Whole, wrong
 from gw_exudyn.scenario.loading import name_from, scenario_from_source
@@ -24,7 +25,7 @@ from gw_exudyn.scenario.words import did_you_mean, nearest, shown
 from gw_exudyn.scenario.yaml_source import Place, YamlSource, read_yaml
 from gw_exudyn.sweep.axes import Axis, axis_schema, read_axis
 from gw_exudyn.sweep.design import FOR_INDICES, METHODS, MOST_POINTS, Design, count_of, grid, sampled, zipped
-from gw_exudyn.sweep.metric_names import metric_names
+from gw_exudyn.sweep.metric_names import metric_table
 from gw_exudyn.sweep.point_list import read_points
 
 MODES = ("grid", "zip", "list", "sample")
@@ -104,17 +105,6 @@ class StudyForm(Section):
             raise wrong(f"{shown(name)} cannot name a folder; {allowed}")
         return name
 
-    @field_validator("metrics", mode="after")
-    @classmethod
-    def _known(cls, metrics: tuple[str, ...]) -> tuple[str, ...]:
-        faults = Faults()
-        for i, name in enumerate(metrics):
-            if name not in metric_names():
-                hint = did_you_mean(name, metric_names())
-                faults.add((i,), f"{shown(name)} is no metric of a run; {hint}known: {', '.join(metric_names())}")
-        faults.raise_if_any()
-        return metrics
-
 
 def study_schema() -> dict[str, Any]:
     """JSON schema of a study file."""
@@ -155,6 +145,11 @@ class Study:
         except ScenarioError as error:
             raise ScenarioError(self.placed(error.problems, point)) from None
 
+    @cached_property
+    def metric_table(self) -> Mapping[str, Metric]:
+        """What a run of the first point tells, by name: units and meanings of the study's metrics."""
+        return metric_table(self.scenario(0))
+
     def _beside(self, path: str, value: Any) -> Any:
         """A file that the study names, beside the study; one that is not there is looked for beside the base."""
         if path.rpartition(".")[2] == "file" and isinstance(value, str) and (self.file.parent / value).is_file():
@@ -172,6 +167,10 @@ class Study:
             return Problem(problem.path, f"{problem.message}{_AT} {point} ({labels})", problem.file, problem.line)
         file, line = self._place(path, point)
         return Problem(problem.path, problem.message, file, line)
+
+    def place(self, path: str) -> Place:
+        """File and line of a value of the study."""
+        return self._places.get(path, (str(self.file), None))
 
     def _place(self, path: str, point: int) -> Place:
         for number, axis in enumerate(self.design.axes):
@@ -205,6 +204,8 @@ def load_study(path_or_name: str | os.PathLike[str], overrides: Sequence[str] = 
         designs = [design] if design is not None else [grid([]), *(grid([axis]) for axis in axes if axis.values)]
         for one in designs:
             problems += _value_problems(_study(form, file, fixed, base, folder, places, one))
+    if base is not None:
+        problems += _metric_problems(_study(form, file, fixed, base, folder, places, design or grid([])))
     if problems or base is None or design is None:
         raise ScenarioError(in_order(_once(problems)))
     return _study(form, file, fixed, base, folder, places, design)
@@ -234,6 +235,21 @@ def _value_problems(study: Study) -> list[Problem]:
             # Told at a value of the study: its own path may differ, where a branch is meant by its name.
             found.add(p for p in error.problems if _AT not in p.message or any(_overlap(p.path, path) for path in mine))
     return found.all()
+
+
+def _metric_problems(study: Study) -> list[Problem]:
+    """Metrics that no run of the study tells; nothing where the first point's scenario is wrong itself."""
+    try:
+        known = study.metric_table
+    except ScenarioError:
+        return []
+    found = []
+    for i, name in enumerate(study.metrics):
+        if name not in known:
+            text = f"{shown(name)} is no metric of a run; {did_you_mean(name, list(known))}known: {', '.join(known)}"
+            file, line = study.place(f"metrics.{i}")
+            found.append(Problem(f"metrics.{i}", text, file, line))
+    return found
 
 
 def _study_file(text: str) -> Path:

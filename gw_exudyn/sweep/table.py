@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from gw_exudyn.result import Floats
 from gw_exudyn.storage.series import SERIES
 from gw_exudyn.sweep.folder import SweepFolder, as_storage_error, read_point
-from gw_exudyn.sweep.metric_names import metric_table
 from gw_exudyn.sweep.run import Failure, Plan, Summary, note_failure
 from gw_exudyn.sweep.study import Study
 
@@ -48,7 +47,7 @@ def write_table(study: Study, plan: Plan, place: SweepFolder, summary: Summary) 
     """Read all points, write sweep.csv, and count in `summary` what came out."""
     count = len(plan.ids)
     status, wall_time, good = [], np.full(count, np.nan), np.zeros(count, dtype=bool)
-    metrics = {name: np.full(count, np.nan) for name in metric_table()}
+    metrics = {name: np.full(count, np.nan) for name in study.metric_table}
     times = _Times()
     part = place.path / f".{TABLE}.part"
     with as_storage_error(place.path):
@@ -80,7 +79,7 @@ def write_table(study: Study, plan: Plan, place: SweepFolder, summary: Summary) 
 
 def _heads(study: Study) -> list[str]:
     axes = [axis.path if axis.unit is None else f"{axis.path} [{axis.unit}]" for axis in study.design.axes]
-    metrics = [f"{name} [{metric.unit}]" for name, metric in metric_table().items()]
+    metrics = [f"{name} [{metric.unit}]" for name, metric in study.metric_table.items()]
     return ["point", "id", *axes, "status", "trusted", "reason", "wall_time [s]", *metrics]
 
 

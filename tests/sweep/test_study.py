@@ -233,3 +233,17 @@ def test_the_shipped_study_is_sound(tmp_path):
     assert len(make_plan(found, tmp_path / "out", Options()).missing) == 12
     with pytest.raises(ScenarioError, match="no shipped study of that name; nearest: friction-and-wire"):
         load_study("friction-and-wires")
+
+
+def test_metrics_of_a_target_and_of_branches_are_those_of_the_base(tmp_path):
+    (tmp_path / "study.yaml").write_text(
+        "base: phantom-universal\nset: {wire.segments: 20, stop.target: {branch: target}}\n"
+        "vary: {contact.friction_coefficient: [0.1, 0.2]}\nmetrics: [target_reached, contact_time_left]\n"
+    )
+    study = load_study(tmp_path / "study.yaml")
+    assert study.metrics[0] in study.metric_table
+    (tmp_path / "plain.yaml").write_text(
+        "base: straight\nvary: {contact.friction_coefficient: [0.1, 0.2]}\nmetrics: [target_reached]\n"
+    )
+    with pytest.raises(ScenarioError, match=r"plain.yaml:3: metrics.0: 'target_reached' is no metric of a run"):
+        load_study(tmp_path / "plain.yaml")
