@@ -152,7 +152,7 @@ def dead_end(wire: str, width: float) -> Finding:
         f"{wire} in a dead end, {width * 1e3:g} mm wide: {result.status.status.name}",
         "insertion depth / mm",
         "push force / N",
-        (Curve("push force", result.values("insertion_depth") * 1e3, push),),
+        (Curve("push force", result.values("insertion_depth") * 1e3, push, "line"),),
     )
     return Finding(rows, (chart,))
 
