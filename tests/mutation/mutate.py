@@ -114,7 +114,7 @@ MUTANTS = (
         "total: Floats = (self.tip.dead + turned) * self.tip.share(self.time)",
         "x, y = self.tip.dead\n        turned += np.array([x * c - y * s - x, x * s + y * c - y])\n"
         "        total: Floats = (self.tip.dead + turned) * self.tip.share(self.time)",
-        (evidence("cantilever under"), ("tests/unit/test_loads.py",)),
+        (evidence("cantilever"), ("tests/unit/test_loads.py",)),
     ),
 )
 
