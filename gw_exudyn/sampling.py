@@ -152,6 +152,7 @@ def _forces(stepper: Stepper, contacts: Mapping[str, Floats]) -> dict[str, Any]:
     force, normal = contacts["force"], contacts["contact_normal_force"]
     vessel, inside = contacts["contact_owner"] == VESSEL, contacts["contact_owner"] == CATHETER
     wall, catheter = force[vessel].sum(axis=0), force[inside].sum(axis=0)
+    catheter = catheter + _on_sleeve(stepper, wall)
     tip = force[contacts["at_tip"].astype(bool)].sum(axis=0)
     return {
         "push_force": stepper.instant.push,
@@ -168,6 +169,19 @@ def _forces(stepper: Stepper, contacts: Mapping[str, Floats]) -> dict[str, Any]:
         "contacts": np.count_nonzero(vessel),
         "penetration_max": max(stepper.contact.deepest().depth, stepper.loads.discs.depth),
     }
+
+
+def _on_sleeve(stepper: Stepper, wall: Floats) -> Floats:
+    """(2,), N, of the wire on a sleeve; zeros for other catheters. wall : (2,), N, of the wire on the vessel.
+
+    Along the axis from the sleeve's potential. The hub runs in the sleeve, so whatever vessel and loads do to the wire
+    across the axis is the sleeve's to take.
+    """
+    sleeve, frame = stepper.loads.sleeve, stepper.model.frame
+    if sleeve is None:
+        return np.zeros(2)
+    across = float(stepper.instant.loads.force[:, 1].sum()) - float(frame.vectors_in(wall)[1])
+    return frame.vectors_out(np.array([-sleeve.push, across]))
 
 
 def _loads(stepper: Stepper) -> dict[str, float]:

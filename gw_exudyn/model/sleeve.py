@@ -32,15 +32,15 @@ _FLANK = 0.1
 
 
 class Sleeve:
-    """The potential on a wire's segments. energy : J, and shares (n,), of each joint's compliance that is outside, of
-    the last `add`."""
+    """The potential on a wire's segments. Of the last `add`: energy, J; push, N, out of the sleeve along its axis; and
+    shares (n,), of each joint's compliance that is outside."""
 
     def __init__(self, wire: Wire) -> None:
         self._stiffness, self._half = wire.joint_stiffness, wire.lengths / 2
         self._begin = -self._half
         self._end = np.concatenate([[0.0], self._half[:-1]])
         self._flank = _FLANK * float(wire.lengths.min())
-        self.energy = 0.0
+        self.energy = self.push = 0.0
         self.shares: Floats = np.ones(wire.segments)
 
     def add(self, motion: Motion, force: Floats, tangent: Floats) -> None:
@@ -50,6 +50,7 @@ class Sleeve:
         v = self._stiffness / 2 * turn**2
         self.energy = float(v @ grown)
         push = -v * slope
+        self.push = float(push.sum())
         bend = self._stiffness * turn
         force[:, 0] += push
         force[:, 2] += push * lever - bend * grown

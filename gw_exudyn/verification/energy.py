@@ -1,7 +1,8 @@
-"""Energies and forces of whole insertions: the books close, friction takes and never gives, walls push and never pull.
+"""Energies and forces of whole insertions: the books close, friction takes and never gives, forces balance.
 
 Each energy comes from its own forces (see `model.energy`); what is left over is the remainder. Here the drive's work
-and the bending energy are worked out once more from the outputs alone.
+and the bending energy are worked out once more from the outputs alone. That walls never pull is asked of the contact
+law itself, in `friction`.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ from functools import partial
 import numpy as np
 
 from gw_exudyn import model
-from gw_exudyn.engine.stepper import Stepper
 from gw_exudyn.result import Result
 from gw_exudyn.scenario import list_shipped, load_scenario
 from gw_exudyn.simulation import simulate
@@ -116,33 +116,6 @@ def never(result: Result) -> list[Evidence]:
     ]
 
 
-def walls_push(name: str) -> Finding:
-    """The normal forces of all pairs of wire and wall, also of those that carry nothing, after every solver step."""
-    stepper = Stepper(model.build(load_scenario(name, {"wire.segments": 60, "solver.step": 0.1})))
-    least, carrying = 0.0, 0
-    while stepper.time < stepper.model.scenario.drive.duration - 1e-9:
-        if not stepper.advance(stepper.next_grid_time()):
-            break
-        stepper.contact.evaluate()
-        for pairs in (stepper.contact.nodes, stepper.contact.corners):
-            least = min(least, float(pairs.normal.min(initial=0.0)))
-            carrying += int(np.count_nonzero(pairs.normal > 0))
-    return Finding(
-        (
-            Evidence(
-                f"least normal force of any pair after any step ({carrying} carry a force)",
-                "N",
-                least if carrying else float("nan"),
-                0.0,
-                0.0,
-                "no tolerance: the law is cut off at zero",
-                "a wall cannot pull [Sharei et al. 2019, Eq. 4]",
-                "at_least",
-            ),
-        )
-    )
-
-
 def balance(wire: str) -> Finding:
     """While the wire slides steadily, the drive's push is what vessel and catheter take, and the catheter's friction is
     its coefficient times its normal force."""
@@ -189,6 +162,5 @@ def balance(wire: str) -> Finding:
 
 CASES = (
     *(Case(GROUP, name, partial(shipped, name)) for name in list_shipped()),
-    *(Case(GROUP, f"walls never pull, {name}", partial(walls_push, name)) for name in list_shipped()),
     *(Case(GROUP, f"balance of forces, {wire}", partial(balance, wire)) for wire in WIRES),
 )

@@ -26,7 +26,8 @@ def circular_channel() -> Finding:
     """Push force of a rod without friction in channels that leave it ever less room, and none at the limit.
 
     The force is the work of the drive over the passage of one segment, over its length: what a joint makes it rise and
-    fall as it enters the bend is averaged out. Clearance must exceed the sagitta of a segment, 5 um, or the chain jams.
+    fall as it enters the bend is averaged out. Clearance must exceed the sagitta of a segment, 8 um, or the chain jams.
+    The catheter is a sleeve, so that the wire goes in on the axis.
     """
     rows: list[Evidence] = []
     gaps = np.array([20e-6, 40e-6, 80e-6])
@@ -93,7 +94,7 @@ def _in_channel(gap: float) -> float:
                 "lead_in": 2e-3,
                 "lead_out": 5e-3,
             },
-            catheter={"exit": [1e-3, 0.0], "bore": width},
+            catheter={"exit": [1e-3, 0.0], "bore": "sleeve"},
             contact={"friction_coefficient": 0.0, "wall_damping": 0.0},
         )
     )

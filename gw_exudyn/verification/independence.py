@@ -38,11 +38,13 @@ TIP_BOUND, FORCE_BOUND = 2e-5, 0.02
 WALL_BOUND = {
     ("bend60", "universal-ii"): 1e-5,
     ("bend60", "amplatz-super-stiff"): 5e-5,
-    ("corner90", "universal-ii"): TIP_BOUND,
+    ("corner90", "universal-ii"): 2e-5,
     ("corner90", "amplatz-super-stiff"): 5e-5,
 }
 """How far the tip may move, m, when the walls get stiffer. A wire sinks in by 2 % of its radius, 4 and 9 um, at the
-estimated peak force; the lever from the corner to the tip, 15 mm in bend60 and 30 mm in corner90, enlarges that."""
+estimated peak force; the lever from the corner to the tip, 15 mm in bend60 and 30 mm in corner90, enlarges that. So the
+soft wire's tip, which is to stay within 0.01 mm, does so in bend60; in corner90 it moves by as much, and is held to
+twice that."""
 
 STEP = 0.1  # s
 
@@ -85,7 +87,8 @@ def _rows(name: str, wall_bound: float, damping_time: float, before: Result, aft
     moved = float(np.hypot(*(tip(after)[-1] - tip(before)[-1])))
     bound, source = TIP_BOUND, "the project's bound on what discretisation does to the tip"
     if name.startswith("wall"):
-        bound, source = wall_bound, "penetration of 2 % of the radius, times the lever from the corner to the tip"
+        bound = wall_bound
+        source = "penetration of 2 % of the radius, times the lever from corner to tip, twice as long in corner90"
     elif name == "joint damping x 10":
         bound, source = 5e-5, "a third of the radius of the soft wire; real wires are damped far less"
     yield Evidence(

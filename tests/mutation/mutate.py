@@ -55,15 +55,15 @@ MUTANTS = (
         "law.tangential = -sign * limit * share;",
         "law.tangential = sign * limit * share;",
         (
+            ("tests/unit/test_contact_kernel.py", "tests/unit/test_energy.py"),
             evidence("friction or (energy and corner90-universal)"),
-            ("tests/unit/test_energy.py", "tests/unit/test_contact_kernel.py"),
         ),
     ),
     Mutant(
         "a full instead of half a segment at the clamp",
         "gw_exudyn/model/wire.py",
-        "    stiffness = 1 / compliance(spec.bending_stiffness, near, far)\n",
-        "    stiffness = 1 / compliance(spec.bending_stiffness, near, far)\n    stiffness[0] /= 2\n",
+        "    stiffness = 1 / compliance(spec.effective_stiffness, near, far)\n",
+        "    stiffness = 1 / compliance(spec.effective_stiffness, near, far)\n    stiffness[0] /= 2\n",
         (evidence("statics or convergence"), ("tests/unit/test_wire.py",)),
     ),
     Mutant(
@@ -83,15 +83,15 @@ MUTANTS = (
     Mutant(
         "half the bending stiffness",
         "gw_exudyn/model/wire.py",
-        "    stiffness = 1 / compliance(spec.bending_stiffness, near, far)\n",
-        "    stiffness = 0.5 / compliance(spec.bending_stiffness, near, far)\n",
+        "    stiffness = 1 / compliance(spec.effective_stiffness, near, far)\n",
+        "    stiffness = 0.5 / compliance(spec.effective_stiffness, near, far)\n",
         (evidence("statics or second"), ("tests/unit/test_wire.py",)),
     ),
     Mutant(
         "force on the wire reported as the force on the vessel",
         "gw_exudyn/sampling.py",
-        "wall, catheter = force[vessel].sum(axis=0), force[~vessel].sum(axis=0)",
-        "wall, catheter = -force[vessel].sum(axis=0), force[~vessel].sum(axis=0)",
+        "wall, catheter = force[vessel].sum(axis=0), force[inside].sum(axis=0)",
+        "wall, catheter = -force[vessel].sum(axis=0), force[inside].sum(axis=0)",
         (evidence("balance"), ("tests/verification/test_contact_scenes.py",)),
     ),
     Mutant(
@@ -99,7 +99,22 @@ MUTANTS = (
         "gw_exudyn/model/energy.py",
         "damping_loss=before.damping_loss + damping + wall_damping,",
         "damping_loss=before.damping_loss,",
-        (evidence("energy and corner90"), ("tests/unit/test_energy.py",)),
+        (("tests/unit/test_energy.py",), evidence("energy and corner90")),
+    ),
+    Mutant(
+        "a wall that pulls back what leaves it quickly",
+        KERNEL,
+        "const int pushing = modulus > 0;",
+        "const int pushing = 1;",
+        (evidence("signs"), ("tests/unit/test_contact_kernel.py",)),
+    ),
+    Mutant(
+        "a dead load at the tip that turns with it",
+        "gw_exudyn/model/loads.py",
+        "total: Floats = (self.tip.dead + turned) * self.tip.share(self.time)",
+        "x, y = self.tip.dead\n        turned += np.array([x * c - y * s - x, x * s + y * c - y])\n"
+        "        total: Floats = (self.tip.dead + turned) * self.tip.share(self.time)",
+        (evidence("cantilever"), ("tests/unit/test_loads.py",)),
     ),
 )
 

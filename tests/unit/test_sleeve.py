@@ -155,3 +155,24 @@ def test_it_takes_the_wire_back() -> None:
     run.advance(5.0)
     for name in ("elastic_energy", "push_force", "tip_y"):
         assert run.outputs[name] == pytest.approx(before[name], rel=1e-3)
+
+
+def test_hub_tip_and_sleeve_are_in_balance_in_any_direction_of_the_catheter() -> None:
+    """What is put on the tip and by the hub, the sleeve takes; along its axis that is -M^2 / (2 EI)."""
+    direction, load = 0.5, np.array([1e-3, 2e-3])
+    scenario = {
+        "wire": {"diameter": 0.36e-3, "density": 6450.0, "length": 0.08, "segments": 80, "bending_stiffness": 1e-6},
+        "drive": {"kind": "speed", "speed": 0.0, "duration": 2.0, "start": 0.0305},
+        "vessel": {"kind": "none"},
+        "catheter": {"exit": [0, 0], "direction": direction, "bore": "sleeve"},
+        "tip": {"force": load.tolist(), "ramp": 1.0},
+    }
+    simulation = Simulation(scenario_from_dict(scenario))
+    simulation.advance(2.0)
+    outputs = simulation.outputs
+    axis = np.array([math.cos(direction), math.sin(direction)])
+    taken = np.array([outputs["catheter_force_x"], outputs["catheter_force_y"]])
+    assert taken == pytest.approx(load + outputs["push_force"] * axis, abs=1e-6 * np.hypot(*load))
+    tip = np.array([outputs["tip_x"], outputs["tip_y"]])
+    moment = tip[0] * load[1] - tip[1] * load[0]
+    assert taken @ axis == pytest.approx(-(moment**2) / 2e-6, rel=0.02)
