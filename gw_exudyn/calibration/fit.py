@@ -18,7 +18,7 @@ from gw_exudyn.comparison import Course
 from gw_exudyn.errors import ComparisonError, SolverError
 from gw_exudyn.result import Floats
 
-STEP = 0.02
+STEP = 0.01
 """To each side for a central difference, relative to the parameter's range."""
 
 HALVINGS = 3
@@ -48,18 +48,31 @@ class Fit:
     """How the fit ended.
 
     point : (p,) relative. residuals : (k,) in units of the noise. jacobian : (k, p) residuals by relative parameters.
-    course : the fitted simulation. sides : per parameter the courses below and above, and how far these are apart,
-    relative. converged, message : how it ended. steps : all points that were tried.
+    bends : (k, p) mean of the residuals on both sides of the point less those at it: how far a simulation is from the
+    straight line that its derivative stands for; 0 where a side lacks. course : the fitted simulation. sides : per
+    parameter the courses below and above, and how far these are apart, relative. converged, message : how it ended.
+    steps : all points that were tried.
     """
 
     point: Floats
     residuals: Floats
     jacobian: Floats
+    bends: Floats
     course: Course
     sides: list[tuple[Course, Course, float]]
     converged: bool
     message: str
     steps: list[Step] = field(default_factory=list)
+
+
+@dataclass(frozen=True, eq=False)
+class _Derivatives:
+    """What was found at a point; as in `Fit`."""
+
+    point: Floats
+    jacobian: Floats
+    bends: Floats
+    sides: list[tuple[Course, Course, float]]
 
 
 class _StuckError(Exception):
@@ -111,7 +124,7 @@ class _Work:
         self._count = 0
         self._steps: list[Step] = []
         self._best: tuple[float, Floats, Floats, Course] | None = None
-        self._derivatives: tuple[Floats, Floats, list[tuple[Course, Course, float]]] | None = None
+        self._derivatives: _Derivatives | None = None
 
     def begin(self) -> Floats:
         """The start, once its simulation says until when there is something to compare."""
@@ -165,7 +178,12 @@ class _Work:
         jacobian = np.column_stack(columns)
         courses = [(low.course, high.course, apart) for low, high, apart in known]
         pairs = [(low, high, apart) for low, high, apart in courses if low is not None and high is not None]
-        self._derivatives = point.copy(), jacobian, pairs
+        (here,) = self._simulate(self._calibration, [point])
+        bends = [
+            (self._of(high) + self._of(low)) / 2 - self._of(here) if here not in (low, high) else np.zeros(self._count)
+            for low, high, _ in known
+        ]
+        self._derivatives = _Derivatives(point.copy(), jacobian, np.column_stack(bends), pairs)
         return jacobian
 
     def _tried(
@@ -196,14 +214,16 @@ class _Work:
         if self._best is None:
             raise SolverError("no simulation worked out")
         _, point, residuals, course = self._best
-        if self._derivatives is None or not np.array_equal(self._derivatives[0], point):
+        if self._derivatives is None or not np.array_equal(self._derivatives.point, point):
             try:
                 self.jacobian(point)
             except _StuckError as stuck:
                 if self._derivatives is None:
                     raise SolverError(f"{stuck}, so the fit cannot begin; take other start values") from None
-        _, jacobian, sides = self._derivatives  # type: ignore[misc]  # set by now
-        return Fit(point, residuals, jacobian, course, sides, converged, message, self._steps)
+        known = self._derivatives
+        if known is None:
+            raise SolverError("no derivative can be had")
+        return Fit(point, residuals, known.jacobian, known.bends, course, known.sides, converged, message, self._steps)
 
 
 def _moved(point: Floats, i: int, to: float) -> Floats:

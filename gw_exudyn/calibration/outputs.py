@@ -8,7 +8,6 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from gw_exudyn.calibration.fit import STEP
 from gw_exudyn.calibration.report import Report
 from gw_exudyn.calibration.statistics import CONFIDENCE, autocorrelation, widening
 from gw_exudyn.errors import StorageError
@@ -108,6 +107,7 @@ def content_of(report: Report, command: str, further: Mapping[str, Any]) -> dict
                 "value": one.value,
                 "unit": one.parameter.unit,
                 "standard_error": one.standard_error,
+                "roughness": one.roughness,
                 "interval": list(one.interval),
                 "confidence": CONFIDENCE,
                 "start": one.parameter.start,
@@ -129,7 +129,9 @@ def content_of(report: Report, command: str, further: Mapping[str, Any]) -> dict
         "reduced_chi_square": found.reduced,
         "student_factor": found.factor,
         "widening_by_autocorrelation": widening(report.channels),
-        "difference_step": STEP,
+        "differences": {
+            one.path: apart * one.range for one, (_, _, apart) in zip(calibration.parameters, fit.sides, strict=False)
+        },
         "align": calibration.align,
         "measured": [
             {

@@ -27,11 +27,14 @@ _MISFIT = 2.0
 
 @dataclass(frozen=True)
 class Estimate:
-    """A fitted parameter, in SI. half_width : of its 95 % interval. doubts : sentences; none where it is identified."""
+    """A fitted parameter, in SI. roughness : the part of the standard error that the simulations have. half_width : of
+    the 95 % interval. doubts : sentences; none where it is identified.
+    """
 
     parameter: Parameter
     value: float
     standard_error: float
+    roughness: float
     half_width: float
     doubts: tuple[str, ...]
 
@@ -57,7 +60,7 @@ class Report:
 def report_of(calibration: Calibration, fit: Fit, observations: Observations) -> Report:
     """Everything that follows from a fit."""
     channels = tuple(observations.channels(fit.course))
-    found = statistics(fit.residuals, fit.jacobian, observations.taken)
+    found = statistics(fit.residuals, fit.jacobian, fit.bends, observations.taken)
     help_by = advice(fit, observations, found, calibration.noise)
     values = calibration.values(fit.point)
     estimates = []
@@ -67,6 +70,7 @@ def report_of(calibration: Calibration, fit: Fit, observations: Observations) ->
                 parameter,
                 values[i],
                 float(found.standard_errors[i]) * parameter.range,
+                float(found.roughness[i]) * parameter.range,
                 float(found.half_widths[i]) * parameter.range,
                 tuple(_sentences(parameter, reasons, help_by[i], calibration.parameters)),
             )
@@ -117,6 +121,11 @@ def _notes(fit: Fit, observations: Observations, channels: Sequence[Channel], fo
     elif found.reduced < 1 / _MISFIT:
         notes.append(
             f"the residuals are {scale} of the stated noise, which is overstated; the intervals are scaled by it"
+        )
+    if (found.roughness > found.standard_errors / 2).any():
+        notes.append(
+            "simulations jump between neighbouring points by what counts beside the noise, which the intervals hold; a "
+            "smaller solver.step makes them smoother"
         )
     worst = max(channels, key=autocorrelation)
     following = autocorrelation(worst)

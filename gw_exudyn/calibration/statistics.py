@@ -38,7 +38,8 @@ class Statistics:
     """All relative to the parameters' ranges.
 
     degrees : of freedom. chi_square, reduced : sum of squares, and by degree of freedom. factor : Student's t.
-    covariance : (p, p). half_widths : (p,) of the 95 % intervals. correlation : (p, p). singular_values : (p,) of the
+    covariance : (p, p). roughness : (p,) the part of the standard errors that simulations have, not the data.
+    half_widths : (p,) of the 95 % intervals. correlation : (p, p). singular_values : (p,) of the
     Jacobian, largest first. directions : (p, p), a row each singular value.
     """
 
@@ -47,6 +48,7 @@ class Statistics:
     reduced: float
     factor: float
     covariance: Floats
+    roughness: Floats
     half_widths: Floats
     correlation: Floats
     singular_values: Floats
@@ -59,9 +61,12 @@ class Statistics:
         return errors
 
 
-def statistics(residuals: Floats, jacobian: Floats, taken: int = 0) -> Statistics:
-    """The statistics of a fit. residuals : (k,) in units of the noise. jacobian : (k, p). taken : unknowns besides the
-    parameters. k is more than all unknowns.
+def statistics(residuals: Floats, jacobian: Floats, bends: Floats, taken: int = 0) -> Statistics:
+    """The statistics of a fit. residuals : (k,) in units of the noise. jacobian, bends : (k, p), as in `Fit`. taken :
+    unknowns besides the parameters. k is more than all unknowns.
+
+    The covariance is that of linear theory, and added to it what a simulation's departure from a straight line within
+    the step of the differences would move the best point by: next to contact events that can be more than the noise.
     """
     from scipy.stats import t
 
@@ -69,22 +74,22 @@ def statistics(residuals: Floats, jacobian: Floats, taken: int = 0) -> Statistic
     chi_square = float(residuals @ residuals)
     reduced = chi_square / degrees
     _, values, directions = np.linalg.svd(jacobian, full_matrices=False)
-    covariance = reduced * inverse(values, directions)
-    errors = np.sqrt(np.diag(covariance))
-    # Without any residual there is no scale for the covariance, but there is still its shape.
     shape = inverse(values, directions)
+    moved = shape @ jacobian.T @ bends
+    covariance = reduced * shape + moved @ moved.T
     spread = np.sqrt(np.diag(shape))
     factor = float(t.ppf(0.5 + CONFIDENCE / 2, degrees))
     return Statistics(
-        degrees,
-        chi_square,
-        reduced,
-        factor,
-        covariance,
-        factor * errors,
-        shape / np.outer(spread, spread),
-        values,
-        directions,
+        degrees=degrees,
+        chi_square=chi_square,
+        reduced=reduced,
+        factor=factor,
+        covariance=covariance,
+        roughness=np.sqrt(np.sum(moved**2, axis=1)),
+        half_widths=factor * np.sqrt(np.diag(covariance)),
+        correlation=shape / np.outer(spread, spread),
+        singular_values=values,
+        directions=directions,
     )
 
 
