@@ -27,9 +27,12 @@ HALVINGS = 3
 MOST_STEPS = 40
 """Points that the fit may try, those for derivatives apart."""
 
-# Relative change of the sum of squares, and of the parameters, below which the fit has come to its end.
-_COST_TOLERANCE = 1e-6
-_STEP_TOLERANCE = 1e-5
+_ENOUGH = 0.01
+"""Change of chi square, by degree of freedom's own, below which the fit has come to its end: a tenth of a standard
+error, as one standard error changes it by 1."""
+
+_STEP_TOLERANCE = 1e-4
+"""The same of the relative parameters."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +101,7 @@ def fitted(
             jac=work.jacobian,
             bounds=(0.0, 1.0),
             method="trf",
-            ftol=_COST_TOLERANCE,
+            ftol=_ENOUGH / work.count,
             xtol=_STEP_TOLERANCE,
             gtol=1e-8,
             max_nfev=MOST_STEPS,
@@ -121,7 +124,7 @@ class _Work:
     def __init__(self, calibration: Calibration, simulate: Simulations, look: Callable[[Step], None]) -> None:
         self._calibration, self._simulate, self._look = calibration, simulate, look
         self.observations: Observations
-        self._count = 0
+        self.count = 0  # of residuals
         self._steps: list[Step] = []
         self._best: tuple[float, Floats, Floats, Course] | None = None
         self._derivatives: _Derivatives | None = None
@@ -141,9 +144,9 @@ class _Work:
             )
         given = self._calibration
         self.observations = Observations(given.measured, given.noise, given.align, end)
-        self._count, free = len(self.observations.residuals(one.course)), len(start) + self.observations.taken
-        if self._count <= free:
-            raise ComparisonError(f"{self._count} measured values are too few for {free} unknowns")
+        self.count, free = len(self.observations.residuals(one.course)), len(start) + self.observations.taken
+        if self.count <= free:
+            raise ComparisonError(f"{self.count} measured values are too few for {free} unknowns")
         return start
 
     def residuals(self, point: Floats) -> Floats:
@@ -159,7 +162,7 @@ class _Work:
         return found
 
     def _of(self, one: Simulated) -> Floats:
-        return np.full(self._count, np.nan) if one.course is None else self.observations.residuals(one.course)
+        return np.full(self.count, np.nan) if one.course is None else self.observations.residuals(one.course)
 
     def jacobian(self, point: Floats) -> Floats:
         """(k, p) Derivatives of the residuals by central differences; one-sided at a bound and beside a failure."""
@@ -180,7 +183,7 @@ class _Work:
         pairs = [(low, high, apart) for low, high, apart in courses if low is not None and high is not None]
         (here,) = self._simulate(self._calibration, [point])
         bends = [
-            (self._of(high) + self._of(low)) / 2 - self._of(here) if here not in (low, high) else np.zeros(self._count)
+            (self._of(high) + self._of(low)) / 2 - self._of(here) if here not in (low, high) else np.zeros(self.count)
             for low, high, _ in known
         ]
         self._derivatives = _Derivatives(point.copy(), jacobian, np.column_stack(bends), pairs)

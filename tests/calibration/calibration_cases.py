@@ -11,10 +11,11 @@ from gw_exudyn.scenario import load_scenario
 from gw_exudyn.simulation import simulate
 
 FRICTION, TIP = "contact.friction_coefficient", "wire.stiffness_factor.tip"
+FORCES = ("push_force", "wall_force_x", "wall_force_y")
 BASE = "arc90"
-TINY = {"wire.segments": 20, "drive.distance": 0.036, "solver.step": 0.2, "output.interval": 0.2}
+TINY = {"wire.segments": 20, "drive.distance": 0.045, "solver.step": 0.2, "output.interval": 0.2}
 FILE = f"""base: {BASE}
-set: {{wire.segments: 20, drive.distance: 36 mm, solver.step: 0.2 s, output.interval: 0.2 s}}
+set: {{wire.segments: 20, drive.distance: 45 mm, solver.step: 0.2 s, output.interval: 0.2 s}}
 measured: [camera.csv, cell.csv]
 noise: {{tip: 0.1 mm, push_force: 0.1 mN}}
 fit:
@@ -30,12 +31,13 @@ def measure(course: Course, seed: int, tip: float = 0.1e-3, push: float = 0.1e-3
     random = np.random.default_rng(seed)
     time = np.arange(0.0, course.time[-1], 1 / 15)
     x, y = (1e3 * (at(course, name, time) + random.normal(0, tip, len(time))) for name in ("tip_x", "tip_y"))
-    force = 1e3 * (at(course, "push_force", time) + random.normal(0, push, len(time)))
+    forces = [1e3 * (at(course, name, time) + random.normal(0, push, len(time))) for name in FORCES]
     gap = random.random(len(time)) < 0.1
     rows = [f"{t},," if lost else f"{t},{a},{b}" for t, a, b, lost in zip(time, x, y, gap, strict=True)]
     Path("camera.csv").write_text("\n".join(["time [s],tip_x [mm],tip_y [mm]", *rows]) + "\n")
-    cell = [f"{t},{f}" for t, f in zip(time, force, strict=True)]
-    Path("cell.csv").write_text("\n".join(["time [s],push_force [mN]", *cell]) + "\n")
+    cell = [",".join(map(str, row)) for row in zip(time, *forces, strict=True)]
+    header = ",".join(["time [s]", *(f"{name} [mN]" for name in FORCES)])
+    Path("cell.csv").write_text("\n".join([header, *cell]) + "\n")
 
 
 def run_of(base: str = BASE, **values: object) -> Course:

@@ -100,6 +100,6 @@ def test_what_lacks_and_what_is_given_twice(write):
 
 
 def test_a_scenario_that_cannot_start_is_told(write):
-    (told,) = problems(write(FILE.replace("drive.distance: 36 mm", "drive.distance: 300 mm")))
-    assert "arc90.yaml:20: drive: pushes 300 mm of a wire of 150 mm" in told
+    (told,) = problems(write(FILE.replace("drive.distance: 45 mm", "drive.distance: 300 mm")))
+    assert "arc90.yaml:21: drive: pushes 300 mm of a wire of 150 mm" in told
     assert told.endswith(f"; first at point 0 ({FRICTION} 0.3, {TIP} 1.0)")
