@@ -58,7 +58,7 @@ def test_it_recovers_what_is_true_and_writes_a_folder(gw, file):
     drawn = {
         f"figures/{name}.{end}" for name in ("confidence", "residuals", "measured_and_fitted") for end in ("png", "pdf")
     }
-    assert names == {"fit.json", "fitted.yaml", "residuals.csv", "figures", "simulations"} | drawn
+    assert names == {"fit.json", "fitted.yaml", "residuals.csv", "figures"} | drawn
     assert {str(Path(path).relative_to(folder)) for path in told["written"]} == {
         "fit.json",
         "fitted.yaml",
