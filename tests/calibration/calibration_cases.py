@@ -13,9 +13,9 @@ from gw_exudyn.simulation import simulate
 FRICTION, TIP = "contact.friction_coefficient", "wire.stiffness_factor.tip"
 FORCES = ("push_force", "wall_force_x", "wall_force_y")
 BASE = "arc90"
-TINY = {"wire.segments": 20, "drive.distance": 0.045, "solver.step": 0.2, "output.interval": 0.2}
+TINY = {"wire.segments": 20, "drive.distance": 0.045, "drive.speed": 4e-3, "solver.step": 0.2, "output.interval": 0.2}
 FILE = f"""base: {BASE}
-set: {{wire.segments: 20, drive.distance: 45 mm, solver.step: 0.2 s, output.interval: 0.2 s}}
+set: {{wire.segments: 20, drive.distance: 45 mm, drive.speed: 4 mm/s, solver.step: 0.2 s, output.interval: 0.2 s}}
 measured: [camera.csv, cell.csv]
 noise: {{tip: 0.1 mm, push_force: 0.1 mN}}
 fit:
