@@ -15,7 +15,7 @@ from gw_exudyn.calibration.form import Calibration
 from gw_exudyn.calibration.observations import Observations
 from gw_exudyn.calibration.simulations import Simulated, Simulations
 from gw_exudyn.comparison import Course
-from gw_exudyn.errors import ComparisonError, SolverError
+from gw_exudyn.errors import ComparisonError, Problem, ScenarioError, SolverError
 from gw_exudyn.result import Floats
 
 STEP = 0.01
@@ -87,8 +87,8 @@ def fitted(
 ) -> tuple[Fit, Observations]:
     """Fit, and what it was fitted to. look : called with every point that was tried.
 
-    Raises SolverError where the start values give no simulation, ComparisonError where measured and simulated have
-    no time in common, and what `simulate` raises.
+    Raises SolverError where the start values give no simulation, ScenarioError where measured and simulated have no
+    time in common, and what `simulate` raises.
     """
     from scipy.optimize import least_squares
 
@@ -143,10 +143,13 @@ class _Work:
                 f"{one.reason}; take other start values, or cut the measured files"
             )
         given = self._calibration
-        self.observations = Observations(given.measured, given.noise, given.align, end)
-        self.count, free = len(self.observations.residuals(one.course)), len(start) + self.observations.taken
-        if self.count <= free:
-            raise ComparisonError(f"{self.count} measured values are too few for {free} unknowns")
+        try:
+            self.observations = Observations(given.measured, given.noise, given.align, end)
+            self.count, free = len(self.observations.residuals(one.course)), len(start) + self.observations.taken
+            if self.count <= free:
+                raise ComparisonError(f"{self.count} measured values are too few for {free} unknowns")
+        except ComparisonError as error:
+            raise ScenarioError(Problem("measured", str(error), str(given.file))) from None
         return start
 
     def residuals(self, point: Floats) -> Floats:

@@ -43,7 +43,7 @@ def run_calibration(
     options : as a sweep's. should_stop : asked a few times a second.
 
     Raises Interrupted where it was stopped (what is done is kept), SolverError where the start values give no
-    simulation, ComparisonError where there is nothing to compare, StorageError for the folder or the disk, UsageError
+    simulation, ScenarioError where there is nothing to compare, StorageError for the folder or the disk, UsageError
     for a scheduler that does not answer.
     """
     options = options or Options(command=f"gw-exudyn calibrate {calibration.file}")

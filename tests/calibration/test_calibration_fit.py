@@ -16,7 +16,7 @@ from gw_exudyn.calibration.fit import fitted
 from gw_exudyn.calibration.report import Report, report_of
 from gw_exudyn.calibration.simulations import Simulated
 from gw_exudyn.comparison import COMPARED, PATH, Course
-from gw_exudyn.errors import ComparisonError, SolverError
+from gw_exudyn.errors import ScenarioError, SolverError
 
 TIME = np.linspace(0.0, 10.0, 101)
 TRUTH = np.array([0.27, 1.3])
@@ -188,10 +188,10 @@ def test_a_start_that_gives_nothing_is_told():
 def test_too_few_values_are_told():
     given = calibration(both)
     Path("cell.csv").write_text("time,push_force\n0,0\n1,0.01\n2,\n")
-    with pytest.raises(ComparisonError, match="2 measured values are too few for 2 unknowns"):
+    with pytest.raises(ScenarioError, match=r"fit\.yaml: measured: 2 measured values are too few for 2 unknowns"):
         report(load_calibration(given.file), Made(both))
     Path("cell.csv").write_text("time,push_force\n20,0\n21,0.01\n22,1\n")
-    with pytest.raises(ComparisonError, match="no time in common"):
+    with pytest.raises(ScenarioError, match="no time in common"):
         report(load_calibration(given.file), Made(both))
 
 
