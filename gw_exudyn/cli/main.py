@@ -19,6 +19,7 @@ COMMANDS: Mapping[str, str] = MappingProxyType(
         for name in (
             "run",
             "sweep",
+            "calibrate",
             "check",
             "plot",
             "animate",

@@ -162,8 +162,8 @@ def _label(value: Any, index: int) -> str:
     return f"#{index}" if isinstance(value, list | dict) else str(value)
 
 
-def _quantity(value: Any, unit: str) -> float:
-    """A number of a form, in SI. Raises what `wrong` makes."""
+def read_number(value: Any, unit: str) -> float:
+    """A number or a quantity, in SI. Raises what `wrong` makes."""
     if is_number(value):
         return as_float(value)
     if not isinstance(value, str) or unit == "1":
@@ -179,7 +179,7 @@ def _spaced(path: str, form: str, raw: Any, kind: ValueKind, faults: Faults) -> 
         faults.add((form,), f"{shown(raw)}; [first, last, count] is needed")
         return None
     unit = kind.unit or "1"
-    first, last = (faults.read((form, i), lambda value: _quantity(value, unit), raw[i]) for i in range(2))
+    first, last = (faults.read((form, i), lambda value: read_number(value, unit), raw[i]) for i in range(2))
     count = raw[2]
     if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= MOST_VALUES:
         faults.add((form, 2), f"{shown(count)} is no count; a whole number from 1 to {MOST_VALUES} is needed")
@@ -202,7 +202,7 @@ def _distributed(path: str, form: str, raw: Mapping[str, Any], kind: ValueKind, 
         return None
 
     def read(loc: Sequence[str | int], value: Any, pure: bool = False) -> float | None:
-        found: float | None = faults.read(tuple(loc), lambda text: _quantity(text, "1" if pure else unit), value)
+        found: float | None = faults.read(tuple(loc), lambda text: read_number(text, "1" if pure else unit), value)
         return found
 
     found = [read((form, i), value, is_pure(form, i)) for i, value in enumerate(numbers)]

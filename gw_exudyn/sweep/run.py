@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -113,7 +114,7 @@ def make_plan(study: Study, folder: Path, options: Options, look: Callable[[int]
             if found in first:
                 continue
             first[found] = point
-            if not options.fresh and _is_there(folder / POINTS / found, options):
+            if not options.fresh and is_there(folder / POINTS / found, options):
                 continue
             missing.append(point)
             _build(study, point, scenario)
@@ -135,7 +136,8 @@ def _build(study: Study, point: int, scenario: Any) -> None:
         raise ScenarioError(study.placed(error.problems, point)) from None
 
 
-def _is_there(folder: Path, options: Options) -> bool:
+def is_there(folder: Path, options: Options) -> bool:
+    """Whether a point is done, as far as the options care."""
     content = read_point(folder)
     if content is None:
         return False
@@ -167,14 +169,14 @@ def run_sweep(
     with SweepFolder(folder) as place:
         # Again under the lock: another sweep may have gone on in between, or a point may have vanished.
         missing = [
-            point for point in plan.missing if options.fresh or not _is_there(place.point(plan.ids[point]), options)
+            point for point in plan.missing if options.fresh or not is_there(place.point(plan.ids[point]), options)
         ]
         place.write_about(_about(study, plan, options))
         if options.fresh:
             place.clear()
         progress = Progress(len(plan.first), earlier=len(plan.first) - len(missing))
         summary = Summary(folder, len(plan.ids), len(plan.first), progress.earlier)
-        sweep = _Sweep(study, plan, options, place, progress, report, should_stop)
+        sweep = Running(study, plan, options, place, progress, report, should_stop)
         summary.interrupted = not sweep.run(missing)
         summary.run = progress.done
         from gw_exudyn.sweep.outputs import write_outputs
@@ -184,7 +186,7 @@ def run_sweep(
     return summary
 
 
-class _Sweep:
+class Running:
     """The running part of a sweep."""
 
     def __init__(
@@ -206,8 +208,11 @@ class _Sweep:
         if not points:
             return True
         with self._pool() as workers:
-            done: bool = workers.run(self._tasks(points), self._keep, self._should_stop, lambda: self._look(workers))
-        return done
+            return self.run_on(workers, points)
+
+    def run_on(self, workers: Pool, points: list[int]) -> bool:
+        """Run points on workers that somebody else has; False if stopped on the way."""
+        return workers.run(self._tasks(points), self._keep, self._should_stop, lambda: self._look(workers))
 
     def run_whole(self, point: int) -> Mapping[str, bytes]:
         """The files of the whole run folder of a point, run for them alone; none where that did not work out."""
@@ -219,7 +224,7 @@ class _Sweep:
         finally:
             process.close()
 
-    def _pool(self) -> Any:
+    def _pool(self) -> AbstractContextManager[Pool]:
         options = self._options
         return pool(options.jobs, options.scheduler, options.runner, options.timeout)
 

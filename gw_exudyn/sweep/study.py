@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, cast
+from typing import Annotated, Any, ClassVar, TypeVar, cast
 
 from pydantic import Field, ValidationError, field_validator
 
@@ -37,8 +37,18 @@ _NAME = re.compile(r"\w[\w.+-]{0,99}")
 _AT = "; first at point"
 """Goes before the point whose scenario is wrong at a place outside the study; problems that differ in it are one."""
 
-_NONE = "-"
+Form = TypeVar("Form", bound=Section)
+
+NONE = "-"
 """Stands for a base that the file does not give, which is told already."""
+
+
+def folder_name(name: str | None) -> str | None:
+    """The name, if it can be that of a folder. Raises what `wrong` makes."""
+    if name is not None and _NAME.fullmatch(name) is None:
+        allowed = "letters, digits and _ . + - are allowed, a letter or digit first, 100 in all"
+        raise wrong(f"{shown(name)} cannot name a folder; {allowed}")
+    return name
 
 
 @dataclass(frozen=True)
@@ -100,10 +110,7 @@ class StudyForm(Section):
     @field_validator("name", mode="after")
     @classmethod
     def _names_a_folder(cls, name: str | None) -> str | None:
-        if name is not None and _NAME.fullmatch(name) is None:
-            allowed = "letters, digits and _ . + - are allowed, a letter or digit first, 100 in all"
-            raise wrong(f"{shown(name)} cannot name a folder; {allowed}")
-        return name
+        return folder_name(name)
 
 
 def study_schema() -> dict[str, Any]:
@@ -192,10 +199,10 @@ def load_study(path_or_name: str | os.PathLike[str], overrides: Sequence[str] = 
     file = _study_file(os.fspath(path_or_name))
     source = read_yaml(file)
     problems = list(source.problems)
-    form = _form(source, problems)
-    fixed, places = _fixed(form, source, overrides, problems)
+    form = read_form(StudyForm, source, problems, {"base": NONE})
+    fixed, places = read_fixed(form.fixed, form.vary, ("varied", "vary"), source, overrides, problems)
     axes = _axes(form, source, problems)
-    base, folder = _base(form.base, file, source, problems)
+    base, folder = read_base(form.base, file, source, problems)
     design = None
     if not problems:
         design = _design(form, axes, file, source, places, problems)
@@ -203,11 +210,11 @@ def load_study(path_or_name: str | os.PathLike[str], overrides: Sequence[str] = 
         # What can be told of the values all the same: of whole points, or of each value by itself.
         designs = [design] if design is not None else [grid([]), *(grid([axis]) for axis in axes if axis.values)]
         for one in designs:
-            problems += _value_problems(_study(form, file, fixed, base, folder, places, one))
+            problems += value_problems(_study(form, file, fixed, base, folder, places, one))
     if base is not None:
         problems += _metric_problems(_study(form, file, fixed, base, folder, places, design or grid([])))
     if problems or base is None or design is None:
-        raise ScenarioError(in_order(_once(problems)))
+        raise ScenarioError(in_order(told_once(problems)))
     return _study(form, file, fixed, base, folder, places, design)
 
 
@@ -225,7 +232,7 @@ def _study(
     return Study(*given, design, fixed, base, folder, places)
 
 
-def _value_problems(study: Study) -> list[Problem]:
+def value_problems(study: Study) -> list[Problem]:
     """What is wrong with values that the study puts into the scenario, as far as its points show it."""
     found, mine = ProblemList(), [*study.fixed, *(axis.path for axis in study.design.axes)]
     for point in range(min(len(study), _MOST_PROBLEMS)):
@@ -265,30 +272,40 @@ def _study_file(text: str) -> Path:
     return path
 
 
-def _form(source: YamlSource, problems: list[Problem]) -> StudyForm:
-    """The file's form; what is wrong with a key is noted, and the key left out."""
+def read_form(form: type[Form], source: YamlSource, problems: list[Problem], missing: Mapping[str, Any]) -> Form:
+    """The file's form; what is wrong with a key is noted, and the key left out. missing : what stands for keys that
+    have to be there.
+    """
     try:
-        return StudyForm.model_validate(source.data)
+        return form.model_validate(source.data)
     except ValidationError as error:
         problems += problems_of(error, source.places)
         wrong_keys = {str(details["loc"][0]) for details in error.errors(include_url=False) if details["loc"]}
     rest = {key: value for key, value in source.data.items() if key not in wrong_keys}
-    return StudyForm.model_validate({"base": _NONE, **rest})
+    return form.model_validate({**missing, **rest})
 
 
-def _fixed(
-    form: StudyForm, source: YamlSource, overrides: Sequence[str], problems: list[Problem]
+def read_fixed(
+    given: Mapping[str, Any],
+    free: Iterable[str],
+    words: tuple[str, str],
+    source: YamlSource,
+    overrides: Sequence[str],
+    problems: list[Problem],
 ) -> tuple[dict[str, Any], dict[str, Place]]:
-    """What `set` and --set put into all points, and the places of all values of the study."""
-    fixed, places = dict(form.fixed), dict(source.places)
+    """What `set` and --set put into all points, and the places of all values of the file.
+
+    free : paths that are not fixed. words : for what is done with those, as ("varied", "vary").
+    """
+    fixed, places, free = dict(given), dict(source.places), tuple(free)
     for text in overrides:
         path, place, read = split_override(text)
         fixed[path] = read()
         places[f"set.{path}"] = (place, None)
     for path in fixed:
-        if any(_overlap(path, other) for other in form.vary):
+        if any(_overlap(path, other) for other in free):
             file, line = places.get(f"set.{path}", (None, None))
-            problems.append(Problem(path, "is varied as well; set it or vary it", file, line))
+            problems.append(Problem(path, f"is {words[0]} as well; set it or {words[1]} it", file, line))
     return fixed, places
 
 
@@ -357,9 +374,9 @@ def _check_sample(form: StudyForm, faults: Faults) -> None:
             faults.add(("method",), missing)
 
 
-def _base(base: str, file: Path, source: YamlSource, problems: list[Problem]) -> tuple[YamlSource | None, Path]:
+def read_base(base: str, file: Path, source: YamlSource, problems: list[Problem]) -> tuple[YamlSource | None, Path]:
     """The scenario that is varied, read, and the folder that its files are relative to."""
-    if base == _NONE:
+    if base == NONE:
         return None, file.parent
     beside = file.parent / base
     try:
@@ -404,7 +421,8 @@ def _design(
     return design
 
 
-def _once(problems: Iterable[Problem]) -> list[Problem]:
+def told_once(problems: Iterable[Problem]) -> list[Problem]:
+    """The problems without those that say the same again."""
     found = ProblemList()
     found.add(problems)
     return found.all()
