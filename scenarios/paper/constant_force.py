@@ -26,7 +26,7 @@ FREE_SPEED = 4e-3
 DURATION = 40.0
 HUB_MASS = 0.01
 DEEP = 80e-3
-"""m. A wire that gets here has passed both corners; its run ends a little further on."""
+"""m. A wire that gets here has passed both corners."""
 
 Runs = dict[tuple[str, str, int], Result]
 
@@ -108,7 +108,7 @@ def _draw(runs: Runs, forces: dict[str, tuple[int, ...]]) -> Any:
         below.minorticks_off()
         for axes in (above, below):
             tidy(axes)
-            axes.set_ylim(0, 1.04 * max(150.0, 1.0))
+            axes.set_ylim(0, 160)
         above.set_title(f"{TITLES[wire]}; line: best EI, band: low to high", loc="left", fontsize=9.5)
         above.set_xlabel("time [s]")
         below.set_xlabel("force on the hub [mN]")

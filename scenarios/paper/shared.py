@@ -71,18 +71,18 @@ def whole(result: Result) -> Result:
 
 
 def run_all(
-    script: str, cases: Mapping[Key, Case], out: Path, keep: Callable[[Result], Any] = whole, workers: int = WORKERS
+    script: str, cases: Mapping[Key, Case], out: Path, keep: Callable[[Result], Any] = whole
 ) -> dict[Key, Any]:
     """Run all cases and return what `keep` (a function of a module) makes of each, by key and in the cases' order.
 
     How long each took goes into timings.csv, in place of what the script wrote there before.
     """
     jobs = [_Job(case, keep) for case in cases.values()]
-    if workers == 1:
+    if WORKERS == 1:
         found = [job() for job in jobs]
     else:
         # spawn: a fresh process knows nothing of this one, on every system alike.
-        with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        with ProcessPoolExecutor(WORKERS, mp_context=get_context("spawn")) as pool:
             found = list(pool.map(_call, jobs))
     _write_timings(script, {_words(key): row[1:] for key, row in zip(cases, found, strict=True)}, out)
     return {key: row[0] for key, row in zip(cases, found, strict=True)}

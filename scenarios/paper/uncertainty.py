@@ -192,6 +192,7 @@ def _draw_indices(axes: Any, rows: list[dict[str, Any]]) -> None:
                 markersize=6, capsize=3, label=f"{WORDS[parameter]}, {'first order' if name == 'S1' else 'total'}",
             )  # fmt: skip
     axes.axhline(0.0, color="black", linewidth=0.6)
+    axes.set_ylim(-0.3, 1.5)
     axes.set_xticks(range(len(outputs)), [name.replace(" [mN]", "").replace("_", " ") for name in outputs])
     axes.set_ylabel("Sobol' index, 95 % interval")
     axes.legend(fontsize=8, frameon=False, ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.1))
