@@ -24,9 +24,9 @@ _AT_THE_END = 1e-5
 class Anchor:
     """Where the tip was last seen to move on: the proximal end's travel there (m), and the tip's place (m)."""
 
-    travel: float = 0.0
-    x: float = 0.0
-    y: float = 0.0
+    travel: float
+    x: float
+    y: float
 
 
 def moved_anchor(anchor: Anchor, length: float, travel: float, tip: tuple[float, float]) -> Anchor:
@@ -44,11 +44,12 @@ class Watch:
     def __init__(self, stepper: Stepper) -> None:
         self._stepper = stepper
         self._spec = stepper.model.scenario.stop
-        self.anchor = Anchor()
+        self.reset()
 
     def reset(self) -> None:
-        """At the start of a run."""
-        self.anchor = Anchor()
+        """At the start of a run: the tip is on the catheter's axis, as far out as the wire is inserted."""
+        start = self._stepper.model.scenario.drive.start
+        self.anchor = Anchor(start, start, 0.0)
 
     def look(self) -> StatusReport | None:
         """The event that ends the run at the nominal time reached, or None."""

@@ -167,7 +167,7 @@ def _contact(result: Result) -> dict[str, Metric]:
 
 def _energy(result: Result) -> dict[str, Metric]:
     error, _ = _peak(np.abs(result.values("energy_error")), result.time)
-    work, _ = _peak(np.abs(result.values("insertion_work")), result.time)
+    work, _ = _peak(np.abs(result.values("insertion_work") + result.values("load_work")), result.time)
     released = [snap.released_energy for snap in result.snaps]
     unit = QUANTITIES["energy_error"].unit
     return {

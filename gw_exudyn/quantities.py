@@ -69,8 +69,14 @@ _DISPLAY: Mapping[str, tuple[tuple[str, float], ...]] = MappingProxyType(
 _TOO_LONG_ON_AXIS = 1e4
 _TOO_LONG_IN_TEXT = 1e3
 
-CONTACT_KINDS = ((-1, "none"), (0, "node_on_wall"), (1, "wall_corner_on_wire"), (2, "tip_disc_on_corner"))
-CONTACT_OWNERS = ((-1, "none"), (0, "vessel"), (1, "catheter"))
+CONTACT_KINDS = (
+    (-1, "none"),
+    (0, "node_on_wall"),
+    (1, "wall_corner_on_wire"),
+    (2, "tip_disc_on_corner"),
+    (3, "disc_on_wire"),
+)
+CONTACT_OWNERS = ((-1, "none"), (0, "vessel"), (1, "catheter"), (2, "support"), (3, "nose"))
 
 _SERIES = (
     Quantity("time", "s", "t", "time since the start of the run", TIME, "s"),
@@ -127,6 +133,13 @@ _SERIES = (
     Quantity(
         "energy_error", "J", "E_err", "work less all stored and lost energies: what the balance leaves over", TIME, "uJ"
     ),
+    Quantity("load_work", "J", "W_load", "work of the loads at the tip and of the nose since the start", TIME, "uJ"),
+    Quantity("support_force_x", "N", "F_sx", "x of the resultant force of the wire on all supports", TIME, "mN"),
+    Quantity("support_force_y", "N", "F_sy", "y of the resultant force of the wire on all supports", TIME, "mN"),
+    Quantity("nose_force", "N", "F_nose", "force of the nose on the wire in the direction of its way", TIME, "mN"),
+    Quantity("nose_travel", "m", "d_nose", "way of the nose since the start", TIME, "mm"),
+    Quantity("tip_hold_force_x", "N", "F_hx", "x of the force of the wire on what holds its tip", TIME, "mN"),
+    Quantity("tip_hold_force_y", "N", "F_hy", "y of the force of the wire on what holds its tip", TIME, "mN"),
 )
 _FURTHER_SCALARS = (
     Quantity(

@@ -14,8 +14,8 @@ from gw_exudyn.model.kernel import Pairs
 
 Floats = NDArray[np.float64]
 
-NODE_ON_WALL, CORNER_ON_WIRE, TIP_ON_CORNER = 0, 1, 2
-VESSEL, CATHETER = 0, 1
+NODE_ON_WALL, CORNER_ON_WIRE, TIP_ON_CORNER, DISC_ON_WIRE = 0, 1, 2, 3
+VESSEL, CATHETER, SUPPORT, NOSE = 0, 1, 2, 3
 
 
 def sample(stepper: Stepper) -> dict[str, Any]:
@@ -25,6 +25,7 @@ def sample(stepper: Stepper) -> dict[str, Any]:
         "time": stepper.time,
         **_place(stepper),
         **_forces(stepper, contacts),
+        **_loads(stepper),
         **_energies(stepper),
         **_solver(stepper),
         **{name: contacts[name] for name in contacts if name.startswith("contact_")},
@@ -52,8 +53,8 @@ def _place(stepper: Stepper) -> dict[str, Any]:
 def contact_points(stepper: Stepper) -> dict[str, Floats]:
     """The contacts that carry a force, (c,) each: the table's contact fields, and `force` (c, 2), N, of the wire on
     the wall in the plane, and `at_tip` (c,) bool, on the tip's disc."""
-    nodes, corners = _node_contacts(stepper), _corner_contacts(stepper)
-    joined = {name: np.concatenate([nodes[name], corners[name]]) for name in nodes}
+    nodes, corners, discs = _node_contacts(stepper), _corner_contacts(stepper), _disc_contacts(stepper)
+    joined = {name: np.concatenate([nodes[name], corners[name], discs[name]]) for name in nodes}
     points = stepper.model.frame.points_out(joined.pop("point"))
     return {**joined, "contact_x": points[:, 0], "contact_y": points[:, 1]}
 
@@ -116,6 +117,27 @@ def _corner_contacts(stepper: Stepper) -> dict[str, Floats]:
     }
 
 
+def _disc_contacts(stepper: Stepper) -> dict[str, Floats]:
+    discs, wire, frame = stepper.loads.discs, stepper.model.wire, stepper.model.frame
+    found = discs.contacts
+    body = np.array([contact.body for contact in found], dtype=int)
+    foot = np.array([contact.foot for contact in found])
+    normal = np.array([contact.normal for contact in found])
+    direction = np.array([contact.direction for contact in found]).reshape(-1, 2)
+    owner = [NOSE if discs.discs[contact.disc].moves else SUPPORT for contact in found]
+    return {
+        "point": np.array([contact.point for contact in found]).reshape(-1, 2),
+        "contact_arc_length": wire.node_arc_length[body + 1] + wire.lengths[body] / 2 - foot,
+        "contact_normal_force": normal,
+        "contact_tangential_force": np.zeros(len(found)),
+        "contact_gap": np.array([contact.gap for contact in found]),
+        "contact_kind": np.full(len(found), DISC_ON_WIRE),
+        "contact_owner": np.array(owner, dtype=int),
+        "force": frame.vectors_out(normal[:, None] * direction),
+        "at_tip": np.zeros(len(found), dtype=bool),
+    }
+
+
 def _carrying(pairs: Pairs) -> NDArray[np.bool_]:
     live: NDArray[np.bool_] = (pairs.normal > 0) & (pairs.weight > 0)
     return live
@@ -128,8 +150,8 @@ def _shares(pairs: Pairs, live: NDArray[np.bool_]) -> tuple[Floats, Floats]:
 
 def _forces(stepper: Stepper, contacts: Mapping[str, Floats]) -> dict[str, Any]:
     force, normal = contacts["force"], contacts["contact_normal_force"]
-    vessel = contacts["contact_owner"] == VESSEL
-    wall, catheter = force[vessel].sum(axis=0), force[~vessel].sum(axis=0)
+    vessel, inside = contacts["contact_owner"] == VESSEL, contacts["contact_owner"] == CATHETER
+    wall, catheter = force[vessel].sum(axis=0), force[inside].sum(axis=0)
     tip = force[contacts["at_tip"].astype(bool)].sum(axis=0)
     return {
         "push_force": stepper.instant.push,
@@ -142,9 +164,31 @@ def _forces(stepper: Stepper, contacts: Mapping[str, Floats]) -> dict[str, Any]:
         "wall_force_max": np.hypot(*force[vessel].T).max(initial=0.0),
         "catheter_force_x": catheter[0],
         "catheter_force_y": catheter[1],
-        "catheter_force_normal": normal[~vessel].sum(),
+        "catheter_force_normal": normal[inside].sum(),
         "contacts": np.count_nonzero(vessel),
-        "penetration_max": stepper.contact.deepest().depth,
+        "penetration_max": max(stepper.contact.deepest().depth, stepper.loads.discs.depth),
+    }
+
+
+def _loads(stepper: Stepper) -> dict[str, float]:
+    discs, frame = stepper.loads.discs, stepper.model.frame
+    support, nose, travel = np.zeros(2), 0.0, 0.0
+    for number, disc in enumerate(discs.discs):
+        force = discs.force_on(number)
+        if disc.moves:
+            nose = -float(force @ disc.way) / float(np.hypot(*disc.way))
+            travel = float(np.hypot(*(disc.centre(stepper.time) - disc.at)))
+        else:
+            support += force
+    support, held = frame.vectors_out(support), frame.vectors_out(-stepper.loads.hold_force(stepper.contact.motion))
+    return {
+        "load_work": stepper.energies.load_work,
+        "support_force_x": support[0],
+        "support_force_y": support[1],
+        "nose_force": nose,
+        "nose_travel": travel,
+        "tip_hold_force_x": held[0],
+        "tip_hold_force_y": held[1],
     }
 
 

@@ -159,7 +159,7 @@ class Simulation:
         if not isinstance(drive, Drive):
             return  # how far it goes is not known before; its run ends at the end of the travel
         position, (furthest_back, wire) = drive.position_at(target), self.model.travel_range
-        if not furthest_back < position < wire:
+        if not furthest_back < position <= wire:
             raise UsageError(
                 f"at {target:.6g} s the drive would be at {position * 1e3:.6g} mm, and the wire of {wire * 1e3:.6g} mm "
                 f"is guided from {furthest_back * 1e3:.6g} mm to its length only; take another speed or a shorter step"

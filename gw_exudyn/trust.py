@@ -33,6 +33,9 @@ def trust_report(stepper: Stepper, *, converged: bool) -> StatusReport | None:
     if not (np.isfinite(stepper.contact.motion.q).all() and np.isfinite(stepper.instant.push)):
         return StatusReport(Status.NOT_FINITE, time)
     deepest = stepper.deepest
+    if stepper.loads.discs.depth > DEEPEST * wire.radius:
+        sunk = f"penetration {stepper.loads.discs.depth * 1e6:.4g} um, {push}"
+        return StatusReport(Status.TOO_DEEP, time, "at a support or the nose", sunk)
     if deepest.depth > DEEPEST * wire.radius:
         sunk = f"penetration {deepest.depth * 1e6:.4g} um, {push}"
         return StatusReport(Status.TOO_DEEP, time, _place(stepper, deepest), sunk)

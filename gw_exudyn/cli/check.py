@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
@@ -74,23 +75,45 @@ def summary_rows(scenario: Scenario, described: dict[str, Any]) -> list[tuple[st
     least, largest = (given(f"wire.bending_stiffness_{end}", "N*mm^2") for end in ("least", "largest"))
     shortest, longest = (given(f"wire.{end}_segment", "mm") for end in ("shortest", "longest"))
     place = ", ".join(f"{value * 1e3:.4g}" for value in catheter.exit)
-    room = format_quantity(float(f"{described['vessel.width_at_exit'] - wire.diameter:.4g}"), "mm")
-    play = format_quantity(float(f"{catheter.bore - wire.diameter:.4g}"), "mm")
     stiffness = "chosen" if scenario.contact.wall_stiffness is None else "given"
     return [
         ("scenario", scenario.name),
         ("wire", f"{wire.model or 'given inline'}, {given('wire.diameter', 'mm')} by {given('wire.length', 'mm')}"),
         ("bending stiffness", least if least == largest else f"{least} to {largest}"),
         ("segments", f"{wire.segments} of {shortest if shortest == longest else f'{shortest} to {longest}'}"),
-        ("vessel", f"{scenario.vessel.kind}, {described['vessel.walls']} walls, {_corners(described)} into the lumen"),
-        *_out_of_plane(described),
-        ("lumen at the exit", f"{given('vessel.width_at_exit', 'mm')}, {room} wider than the wire"),
-        ("catheter", f"exit at ({place}) mm, bore {given('catheter.bore', 'mm')}, {play} wider than the wire"),
+        *_vessel_rows(scenario, described, given),
+        ("catheter", f"exit at ({place}) mm, {_bore(scenario)}"),
         ("friction", f"{scenario.contact.friction_coefficient:g}"),
         ("wall stiffness", f"{given('contact.wall_stiffness', 'N/m')}, {stiffness}"),
         ("drive", f"{_drive(scenario, described)}, {given('drive.duration', 's')} in all"),
         ("solver steps", f"about {described['solver.steps']} of {format_quantity(scenario.solver.step, 'ms')}"),
     ]
+
+
+def _vessel_rows(
+    scenario: Scenario, described: dict[str, Any], given: Callable[[str, str], str]
+) -> list[tuple[str, str]]:
+    from gw_exudyn.scenario.units import format_quantity
+
+    if scenario.vessel.kind == "none":
+        return [("vessel", "none")]
+    room = format_quantity(float(f"{described['vessel.width_at_exit'] - scenario.wire.diameter:.4g}"), "mm")
+    walls = f"{described['vessel.walls']} walls, {_corners(described)} into the lumen"
+    return [
+        ("vessel", f"{scenario.vessel.kind}, {walls}"),
+        *_out_of_plane(described),
+        ("lumen at the exit", f"{given('vessel.width_at_exit', 'mm')}, {room} wider than the wire"),
+    ]
+
+
+def _bore(scenario: Scenario) -> str:
+    from gw_exudyn.scenario.units import format_quantity
+
+    bore = scenario.catheter.bore
+    if bore is None:
+        return "no tube: only the drive holds the wire"
+    inner, play = (format_quantity(float(f"{width:.4g}"), "mm") for width in (bore, bore - scenario.wire.diameter))
+    return f"bore {inner}, {play} wider than the wire"
 
 
 def _drive(scenario: Scenario, described: dict[str, Any]) -> str:

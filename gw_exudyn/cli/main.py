@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import os
 from collections.abc import Mapping, Sequence
 from importlib import import_module
 from types import MappingProxyType
@@ -64,4 +65,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit code. `arguments`: without the program's name; None takes those of the
     process.
     """
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+        # Our matrices are small: threads of the linear algebra only get in each other's way. Read when numpy is loaded.
+        os.environ.setdefault(name, "1")
     return exit_code_of(lambda: gw_exudyn.main(arguments, prog_name="gw-exudyn", standalone_mode=False))

@@ -40,6 +40,9 @@ def _section(section: Section, above: str) -> Iterator[tuple[str, str]]:
             yield from _drive(path, value)
         elif name == "points":
             yield from _listed(path, [_text(point, Row(("x", "y"), (COORDINATE, COORDINATE))) for point in value])
+        elif name == "supports":
+            for i, support in enumerate(value):
+                yield from _section(support, f"{path}.{i}.")
         elif isinstance(value, Section):
             yield from _section(value, f"{path}.")
         elif value is not None or (isinstance(kind, Quantity) and kind.word_for(value)):
@@ -68,6 +71,8 @@ def _drive(path: str, drive: SpeedDrive | ForceDrive | TipSpeedDrive) -> Iterato
     values, kind = (drive.force, FORCE) if drive.kind == "force" else (drive.speed, SPEED)
     rows = zip(drive.time, values, strict=True)
     yield f"{path}.kind", drive.kind
+    yield f"{path}.start", format_quantity(drive.start, "mm")
+    yield f"{path}.hold", drive.hold
     yield from _listed(f"{path}.table", [f"at {format_quantity(t, 's')}: {_text(v, kind)}" for t, v in rows])
     plain = drive.to_plain()
     for name, kind in _DRIVE_VALUES.items():

@@ -31,7 +31,7 @@ class System:
     reference : (n, 3), place of the centres (m) and angles (rad) of the segments at the start; Exudyn's coordinates
         count from there.
     hub : what moves the proximal end. range : m, its travel stays between these. contact : the object that carries
-        the contact forces.
+        the forces of contact and loads. base_moves : the hub is free to move across the axis.
     """
 
     container: Any
@@ -40,6 +40,7 @@ class System:
     hub: Hub
     range: tuple[float, float]
     contact: int
+    base_moves: bool
 
 
 Jacobian = Callable[[Any, float, int, list[float], list[float], float, float], Any]
@@ -54,14 +55,15 @@ def assemble(model: Model, contact_jacobian: Jacobian) -> System:
     container = exu.SystemContainer()
     mbs = container.AddSystem()
     reference = reference_places(wire)
-    drive = model.drive
-    speed = 0.0 if isinstance(drive, Force) else drive.speed_at(0.0)
+    drive, inserted = model.drive, model.scenario.drive.start
+    # Nothing moves at first where what holds the tip stops it.
+    speed = 0.0 if isinstance(drive, Force) or model.loads.tip.held[0] > 0 else drive.speed_at(0.0)
     hub_mass = drive.hub_mass if isinstance(drive, Force) else float(wire.mass[0])
-    hub_body, hub_node = _body(mbs, items, (-wire.length, 0.0, 0.0), hub_mass, float(wire.inertia[0]), speed)
+    hub_body, hub_node = _body(mbs, items, (-wire.length, 0.0, 0.0), hub_mass, float(wire.inertia[0]), inserted, speed)
     hub = _guide(mbs, items, hub_node, model)
     bodies, nodes = [], []
     for i in range(wire.segments):
-        body, node = _body(mbs, items, reference[i], float(wire.mass[i]), float(wire.inertia[i]), speed)
+        body, node = _body(mbs, items, reference[i], float(wire.mass[i]), float(wire.inertia[i]), inserted, speed)
         bodies.append(body)
         nodes.append(node)
     for i in range(wire.segments):
@@ -83,26 +85,31 @@ def assemble(model: Model, contact_jacobian: Jacobian) -> System:
         )
     )
     mbs.Assemble()
-    return System(container, mbs, reference, hub, model.travel_range, contact)
+    return System(container, mbs, reference, hub, model.travel_range, contact, model.scenario.drive.hold == "axial")
 
 
 def reference_places(wire: Wire) -> Floats:
-    """(n, 3): centre (m) and angle (rad) of each segment of the straight wire, its tip at the origin."""
+    """(n, 3): centre (m) and angle (rad) of each segment of the straight wire, its tip at the origin, from where
+    Exudyn's coordinates count; the length inserted at the start is an initial coordinate."""
     places = np.zeros((wire.segments, 3))
     places[:, 0] = -(wire.node_arc_length[:-1] + wire.node_arc_length[1:]) / 2
     return places
 
 
-def _body(mbs: Any, items: Any, place: Any, mass: float, inertia: float, speed: float) -> tuple[int, int]:
+def _body(mbs: Any, items: Any, place: Any, mass: float, inertia: float, start: float, speed: float) -> tuple[int, int]:
     node = mbs.AddNode(
-        items.NodeRigidBody2D(referenceCoordinates=[float(x) for x in place], initialVelocities=[speed, 0.0, 0.0])
+        items.NodeRigidBody2D(
+            referenceCoordinates=[float(x) for x in place],
+            initialCoordinates=[start, 0.0, 0.0],
+            initialVelocities=[speed, 0.0, 0.0],
+        )
     )
     return mbs.AddObject(items.ObjectRigidBody2D(mass=mass, inertia=inertia, nodeNumber=node)), node
 
 
 def _guide(mbs: Any, items: Any, hub_node: int, model: Model) -> Hub:
-    """Hold the hub on the axis without turning, and let the drive place or push it along the axis. What places it is
-    the first constraint."""
+    """Hold the hub on the axis (where the drive does) without turning, and let the drive place or push it along the
+    axis. What places it is the first constraint; one that holds nothing keeps its place among the constraint forces."""
     ground = mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=mbs.AddNode(items.NodePointGround()), coordinate=0))
     markers = [
         mbs.AddMarker(items.MarkerNodeCoordinate(nodeNumber=hub_node, coordinate=coordinate))
@@ -113,8 +120,8 @@ def _guide(mbs: Any, items: Any, hub_node: int, model: Model) -> Hub:
         hub = PushedHub(mbs, items, ground, markers[0], model.drive.hub_damping)
     else:
         hub = PlacedHub(mbs, items, ground, markers[0], float(model.wire.mass[0]))
-    for marker in markers[1:]:
-        mbs.AddObject(items.CoordinateConstraint(markerNumbers=[ground, marker], offset=0.0))
+    for marker, holds in zip(markers[1:], (model.scenario.drive.hold != "axial", True), strict=True):
+        mbs.AddObject(items.CoordinateConstraint(markerNumbers=[ground, marker], offset=0.0, activeConnector=holds))
     return hub
 
 

@@ -18,9 +18,6 @@ BETA = 0.25 * (GAMMA + 0.5) ** 2
 MOST_ITERATIONS = 12
 """Of Newton's method in a step. Where more are needed, shorter steps are cheaper."""
 
-ABSOLUTE_TOLERANCE = 1e-7
-"""Residual, N, that is good enough whatever it was at first: a ten-thousandth of the least force that matters."""
-
 
 def velocity_factor(step: float) -> float:
     """d q_t / d q of the integrator within a step, 1/s."""
@@ -32,8 +29,8 @@ def acceleration_factor(step: float) -> float:
     return (1 - ALPHA_M) / (BETA * step**2 * (1 - ALPHA_F))
 
 
-def simulation_settings(step: float, minimum_step: float, tolerance: float) -> Any:
-    """Exudyn's settings. step, minimum_step : s. tolerance : relative, of the residual."""
+def simulation_settings(step: float, minimum_step: float, tolerance: float, absolute_tolerance: float) -> Any:
+    """Exudyn's settings. step, minimum_step : s. tolerance : relative, of the residual; absolute_tolerance : N."""
     settings = exudyn().SimulationSettings()
     integration = settings.timeIntegration
     integration.numberOfSteps = 1
@@ -51,7 +48,7 @@ def simulation_settings(step: float, minimum_step: float, tolerance: float) -> A
     # The contact's tangent is exact and cheap, so full Newton needs fewest residuals.
     integration.newton.useModifiedNewton = False
     integration.newton.relativeTolerance = tolerance
-    integration.newton.absoluteTolerance = ABSOLUTE_TOLERANCE
+    integration.newton.absoluteTolerance = absolute_tolerance
     integration.newton.maxIterations = MOST_ITERATIONS
     # One pass, whose result the checks after Newton may refuse: then the step is cut.
     integration.discontinuous.maxIterations = 1

@@ -18,7 +18,7 @@ from gw_exudyn.model.hub import HubEnergies
 Floats = NDArray[np.float64]
 
 _MAGIC = b"GWEX"
-_VERSION = 2
+_VERSION = 3
 
 
 @dataclass(frozen=True)

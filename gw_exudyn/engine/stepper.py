@@ -25,6 +25,7 @@ from gw_exudyn.model.contact import NOWHERE, Contact, Deepest
 from gw_exudyn.model.drive import AnyDrive, Force
 from gw_exudyn.model.energy import Energies, Snapshot, advanced, snapshot
 from gw_exudyn.model.hub import HubEnergies, HubInstant, hub_advanced
+from gw_exudyn.model.loads import Loads
 from gw_exudyn.model.tip_speed import Leg, TipSpeed
 
 Floats = NDArray[np.float64]
@@ -58,10 +59,11 @@ class Stepper:
         self.contact = Contact(model.wire, model.walls, model.law)
         self.drive: AnyDrive = model.drive
         spec = model.scenario.solver
-        self._newton = Newton(self.contact)
+        self.loads = Loads(model.wire, model.loads)
+        self._newton = Newton(self.contact, self.loads)
         self.system: System = assemble(model, self._newton.tangent)
-        self._newton.attach(self.system)
-        self._settings = simulation_settings(spec.step, spec.minimum_step, spec.tolerance)
+        self._newton.attach(self.system, spec.step)
+        self._settings = simulation_settings(spec.step, spec.minimum_step, spec.tolerance, spec.absolute_tolerance)
         self._solver = exudyn().MainSolverImplicitSecondOrder()
         self._newton.install(self._start_trial, self._end_step)
         if not self._solver.InitializeSolver(self.system.mbs, self._settings):
@@ -79,7 +81,7 @@ class Stepper:
         self.reset()
 
     def reset(self) -> None:
-        """Back to the start: the straight wire in the catheter, the tip at the exit."""
+        """Back to the start: the straight wire, inserted as far as the scenario says."""
         self.drive = self.model.drive
         self.steps, self.smallest_step = 0, math.inf
         self._newton.reset_counts()
@@ -246,7 +248,8 @@ class Stepper:
 
     def _look(self) -> Snapshot:
         self._hub = self.system.hub.instant(self.system.mbs, self.drive, self._time)
-        return snapshot(self.model.wire, self.contact.motion, self._hub.push, self._hub.travel)
+        loads = self.loads.instant(self.contact.motion)
+        return snapshot(self.model.wire, self.contact.motion, self._hub.push, self._hub.travel, loads)
 
     def _prepare(self) -> None:
         self.contact.start_step()
@@ -357,10 +360,16 @@ class Stepper:
         self.contact.evaluate()
         self.contact.accept()
         multipliers = np.zeros(len(data.GetAECoordinates()))
-        instant = snapshot(self.model.wire, self.contact.motion, 0.0, 0.0)
-        stored = instant.elastic + instant.kinetic
+        loads = self.loads.instant(self.contact.motion)
+        instant = snapshot(self.model.wire, self.contact.motion, 0.0, 0.0, loads)
+        stored = instant.elastic + loads.stored + instant.kinetic
         energies = replace(
-            Energies(), elastic=instant.elastic, kinetic=instant.kinetic, start=stored, largest_work=stored
+            Energies(),
+            elastic=instant.elastic,
+            wall=loads.stored,
+            kinetic=instant.kinetic,
+            start=stored,
+            largest_work=stored,
         )
         zeros, memory = np.zeros_like(q), self.contact.memory
         return State(0.0, q, q_t, zeros, zeros.copy(), multipliers, memory, energies, HubEnergies(), self._control())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +13,16 @@ from gw_exudyn.model.checks import check, travel_wanted
 from gw_exudyn.model.contact import ContactLaw
 from gw_exudyn.model.drive import AnyDrive, Drive, build_drive
 from gw_exudyn.model.frame import Frame
-from gw_exudyn.model.law import SINKING, Surroundings, contact_law, law_warnings, surroundings, value_or
+from gw_exudyn.model.law import (
+    SINKING,
+    Surroundings,
+    bore_or_more,
+    contact_law,
+    law_warnings,
+    surroundings,
+    value_or,
+)
+from gw_exudyn.model.loads import LoadSet, build_loads
 from gw_exudyn.model.outline import Outline, build_outline
 from gw_exudyn.model.patches import Patch
 from gw_exudyn.model.walls import Tube, Walls, build_walls, corners_into, tube_polylines, vessel_polylines
@@ -44,22 +53,28 @@ class Model:
     drive: AnyDrive
     outline: Outline
     tube: Tube
+    loads: LoadSet
     around: Surroundings
     warnings: tuple[str, ...]
 
     @property
     def travel_range(self) -> tuple[float, float]:
-        """Travel, m, between which the proximal end stays in the catheter, and the catheter's walls reach."""
-        return self.wire.length - self.tube.length, self.wire.length
+        """Travel, m, between which the proximal end stays in the catheter, and the catheter's walls reach; a wire may
+        be inserted whole, give or take a rounding error. Without a tube there is no end."""
+        if not self.tube.walled:
+            return -math.inf, math.inf
+        return self.wire.length - self.tube.length, self.wire.length * (1 + 1e-12)
 
     @property
     def stall_travel(self) -> float:
         """Travel, m, of the proximal end in which a tip that stays where it is has stalled; infinite for never.
 
         In the vessels of benchmarks/cases.py (100 segments, friction 0.2 and 0.4) a tip sticks for up to 0.6 lumens of
-        travel before it goes on; those that stuck for longer never came free.
+        travel before it goes on; those that stuck for longer never came free. A tip that is held in its place does not
+        stall.
         """
-        chosen = max(_LEAST_STALL, _STALL_LUMENS * self.around.width)
+        held = self.loads.tip.held[0] > 0
+        chosen = math.inf if held else max(_LEAST_STALL, _STALL_LUMENS * self.around.width)
         return value_or(self.scenario.stop.tip_stall, chosen)
 
     def vessel_outline(self) -> list[Floats]:
@@ -71,6 +86,8 @@ class Model:
 
     def catheter_outline(self) -> list[Floats]:
         """The catheter's walls for drawing, in the scenario's plane: (2, 2) polylines, m, as long as the wire."""
+        if self.scenario.catheter.bore is None:
+            return []
         drawn = Tube(self.tube.bore, self.wire.length)
         return [self.frame.points_out(points) for points in tube_polylines(drawn)]
 
@@ -92,7 +109,7 @@ class Model:
             "vessel.branches": list(scenario.vessel.branch_names),
             "vessel.out_of_plane": getattr(scenario.vessel, "out_of_plane", None),
             "vessel.width_at_exit": self.around.width,
-            "catheter.bore": self.tube.bore,
+            "catheter.bore": scenario.catheter.bore,
             "contact.wall_stiffness": self.law.stiffness,
             "contact.wall_damping": self.law.damping * SINKING * self.wire.radius,
             "contact.tangential_stiffness": self.law.tangential_stiffness,
@@ -109,13 +126,15 @@ class Model:
 def build(scenario: Scenario) -> Model:
     """The model of a scenario. Raises ScenarioError for what cannot start (see checks)."""
     frame = Frame(scenario.catheter.exit, scenario.catheter.direction)
-    wire, drive = build_wire(scenario.wire), build_drive(scenario.drive)
+    wire, drive = _held(build_wire(scenario.wire), scenario.drive.hold), build_drive(scenario.drive)
     plane = build_outline(scenario.vessel)
     outline = Outline(frame.points_in(plane.points), plane.open_edges)
-    pulled_back = -drive.extremes()[0] if isinstance(drive, Drive) else 0.0
-    tube = Tube(scenario.catheter.bore, 2 * wire.length + pulled_back)
-    check(scenario, outline, tube, drive)
-    around = surroundings(outline)
+    pulled_back = max(0.0, -drive.extremes()[0]) if isinstance(drive, Drive) else 0.0
+    bore = scenario.catheter.bore
+    tube = Tube(bore or scenario.wire.diameter, 2 * wire.length + pulled_back, walled=bore is not None)
+    loads = build_loads(scenario, wire, frame)
+    check(scenario, outline, tube, drive, loads.discs)
+    around = surroundings(outline, bore_or_more(scenario))
     law = contact_law(scenario, around)
     contact, patches = scenario.contact, _patches(scenario, frame)
     walls = build_walls(
@@ -133,7 +152,16 @@ def build(scenario: Scenario) -> Model:
         *_shaft_alone(scenario),
         *_off_the_walls(patches, walls),
     )
-    return Model(scenario, frame, wire, walls, law, drive, outline, tube, around, warnings)
+    return Model(scenario, frame, wire, walls, law, drive, outline, tube, loads, around, warnings)
+
+
+def _held(wire: Wire, hold: str) -> Wire:
+    """The wire as the drive holds it: without the first joint's spring where its end may turn."""
+    if hold == "clamped":
+        return wire
+    stiffness, damping, rest = wire.joint_stiffness.copy(), wire.joint_damping.copy(), wire.rest_angle.copy()
+    stiffness[0] = damping[0] = rest[0] = 0.0
+    return replace(wire, joint_stiffness=stiffness, joint_damping=damping, rest_angle=rest)
 
 
 def _patches(scenario: Scenario, frame: Frame) -> list[Patch]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gw_exudyn.errors import Problem, ScenarioError
+from gw_exudyn.model.discs import Disc
 from gw_exudyn.model.drive import AnyDrive, Drive, Force
 from gw_exudyn.model.law import JUST_AHEAD
 from gw_exudyn.model.outline import Outline
@@ -22,19 +24,22 @@ _STEP = 1e-6
 """By how much, m, a wall may stand inside the bore at the exit: far less than the wire notices."""
 
 
-def check(scenario: Scenario, outline: Outline, tube: Tube, drive: AnyDrive) -> None:
+def check(scenario: Scenario, outline: Outline, tube: Tube, drive: AnyDrive, discs: Sequence[Disc] = ()) -> None:
     """Raise ScenarioError with everything that keeps this wire from starting in this vessel.
 
-    outline and tube in the catheter's frame.
+    outline, tube and discs in the catheter's frame.
     """
-    problems = _bore(scenario) + _exit(scenario, outline, tube) + _travel(scenario, drive)
+    problems = _bore(scenario)
+    if len(outline.points):
+        problems += _exit(scenario, outline, tube) or _start(scenario, outline, tube)
+    problems += _travel(scenario, drive) + _discs(scenario, discs)
     if problems:
         raise ScenarioError(problems)
 
 
 def _bore(scenario: Scenario) -> list[Problem]:
     diameter, bore = scenario.wire.diameter, scenario.catheter.bore
-    if diameter < bore:
+    if not bore or diameter < bore:
         return []
     text = (
         f"{_mm(bore)} is no wider than the wire, {_mm(diameter)}; "
@@ -75,8 +80,14 @@ def _exit(scenario: Scenario, outline: Outline, tube: Tube) -> list[Problem]:
 
 def _travel(scenario: Scenario, drive: AnyDrive) -> list[Problem]:
     """The proximal end stays behind the exit: the drive holds it on the catheter's axis."""
+    if scenario.catheter.bore is None:
+        return []
+    start, length = scenario.drive.start, scenario.wire.length
+    if start > length:
+        text = f"{_mm(start)} of a wire of {_mm(length)} cannot be inserted at the start"
+        return [scenario.problem("drive.start", f"{text}; start with less, or take a longer wire (wire.length)")]
     furthest = travel_wanted(scenario, drive)
-    if furthest is None or furthest < scenario.wire.length:
+    if furthest is None or furthest <= length * (1 + 1e-12):
         return []
     text = (
         f"pushes {_mm(furthest)} of a wire of {_mm(scenario.wire.length)}: its end would leave the catheter; "
@@ -85,9 +96,65 @@ def _travel(scenario: Scenario, drive: AnyDrive) -> list[Problem]:
     return [scenario.problem("drive", text)]
 
 
+def _start(scenario: Scenario, outline: Outline, tube: Tube) -> list[Problem]:
+    """The straight wire is clear of the walls as far as it is inserted at the start."""
+    start, radius = scenario.drive.start, scenario.wire.diameter / 2
+    if start == 0:
+        return []
+    for points, closed in vessel_polylines(outline, tube):
+        free = first_within(points, closed, radius)
+        if free < start:
+            text = (
+                f"{_mm(start)} of straight wire would stand in a wall of the vessel, {_mm(max(free, 0.0))} from the "
+                "catheter's exit; start with less, or turn the catheter (catheter.direction)"
+            )
+            return [scenario.problem("drive.start", text)]
+    return []
+
+
+def _discs(scenario: Scenario, discs: Sequence[Disc]) -> list[Problem]:
+    """Each disc leaves room for the straight wire at the start."""
+    tip, radius = scenario.drive.start, scenario.wire.diameter / 2
+    problems = []
+    for number, disc in enumerate(discs):
+        x, y = disc.at
+        beside = min(max(float(x), tip - scenario.wire.length), tip)
+        room = float(np.hypot(x - beside, y)) - disc.radius
+        ahead = beside == tip and x > tip
+        side = ahead or disc.side * y > 0
+        if side and room >= radius - _STEP:
+            continue
+        path = f"supports.{number}" if number < len(scenario.supports) else "nose"
+        text = f"stands in the wire or on its other side; {_mm(disc.radius + radius)} from its axis are needed"
+        problems.append(scenario.problem(f"{path}.at", f"{text}; move it away from the wire, or take another side"))
+    return problems
+
+
+def first_within(points: Floats, closed: bool, radius: float) -> float:
+    """Least x >= 0, m, at which a polyline (m, 2) comes nearer than `radius` to the x axis; infinite if none."""
+    a = points if closed else points[:-1]
+    b = np.roll(points, -1, axis=0) if closed else points[1:]
+    found = np.inf
+    for (ax, ay), (bx, by) in zip(a, b, strict=True):
+        # The part of the edge in the strip about the axis.
+        low, high = 0.0, 1.0
+        if ay == by:
+            if abs(ay) >= radius:
+                continue
+        else:
+            ends = sorted(((-radius - ay) / (by - ay), (radius - ay) / (by - ay)))
+            low, high = max(low, ends[0]), min(high, ends[1])
+            if low >= high:
+                continue
+        nearest, furthest = sorted((ax + low * (bx - ax), ax + high * (bx - ax)))
+        if furthest > 0:
+            found = min(found, max(nearest, 0.0))
+    return float(found)
+
+
 def travel_wanted(scenario: Scenario, drive: AnyDrive) -> float | None:
-    """Furthest travel, m, of the proximal end, or of the tip where that is what is driven; None for a force, of which
-    the run will tell."""
+    """Furthest travel, m, of the proximal end, or of the tip where that is what is driven, with the length inserted at
+    the start; None for a force, of which the run will tell."""
     if isinstance(drive, Force):
         return None
     return drive.extremes()[1] if isinstance(drive, Drive) else drive.course.area_to(scenario.drive.duration)

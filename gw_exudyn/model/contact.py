@@ -138,13 +138,13 @@ class Contact:
         self.motion.struct.predicted = int(predicted)
         self._kernel.evaluate(self.motion, self.nodes, self.corners, position, velocity)
 
-    def add_turning(self, reaction: Floats, *, stiffening: bool) -> None:
-        """Add to the tangent how the joints' forces turn each segment as it turns.
+    def add_turning(self, tangent: Floats, reaction: Floats, *, stiffening: bool) -> None:
+        """Add to a tangent (9 n,) like `tangent`, contiguous, how the joints' forces turn each segment as it turns.
 
         reaction : (2 n,), N, minus the force on each segment's proximal end, contiguous. stiffening : leave out what
         makes a segment resist its turn less.
         """
-        self._kernel.add_turning(self.motion, reaction, stiffening=stiffening)
+        self._kernel.add_turning(self.motion, tangent, reaction, stiffening=stiffening)
 
     def share_to_touch(self, before: Motion) -> float:
         """Share of the way from the place `before` to the present one where the first contact closes.
@@ -203,6 +203,10 @@ class Contact:
         joint_stiffness : (n,), N m/rad, of the joint proximal to each body, the damper's share of the step included.
         """
         return self._kernel.unstable(self.motion, self.nodes, self.corners, joint_stiffness) > 0
+
+    def rubs(self) -> bool:
+        """A contact with friction carries force at the last `evaluate`."""
+        return any(bool(pairs.tangential.any()) for pairs in (self.nodes, self.corners))
 
     def crossing(self) -> tuple[int, int] | None:
         """(body, wall) where the wire's axis crosses a wall of the vessel or the catheter now, or None."""

@@ -14,7 +14,8 @@ Floats = NDArray[np.float64]
 class Course:
     """A table, linear in between, held after its end.
 
-    time : (k,), s, rising, two equal times make a step. value : (k,). area : (k,), the integral up to each time.
+    time : (k,), s, rising, two equal times make a step. value : (k,). area : (k,), a start and the integral up to each
+        time.
     """
 
     time: Floats
@@ -22,17 +23,17 @@ class Course:
     area: Floats
 
     @classmethod
-    def of(cls, time: ArrayLike, value: ArrayLike) -> Course:
-        """The table with its integral."""
+    def of(cls, time: ArrayLike, value: ArrayLike, start: float = 0.0) -> Course:
+        """The table with its integral, which begins at `start`."""
         t, v = np.asarray(time, dtype=float), np.asarray(value, dtype=float)
-        return cls(t, v, np.concatenate([[0.0], np.cumsum(np.diff(t) * (v[1:] + v[:-1]) / 2)]))
+        return cls(t, v, start + np.concatenate([[0.0], np.cumsum(np.diff(t) * (v[1:] + v[:-1]) / 2)]))
 
     def at(self, time: float) -> float:
         """The value at a time, s; at a step of the table the later one."""
         return self._in_row(time, self._row(time))
 
     def area_to(self, time: float) -> float:
-        """The integral from 0 to a time, s."""
+        """The start and the integral from 0 to a time, s."""
         i = self._row(time)
         mean = (float(self.value[i]) + self._in_row(time, i)) / 2
         return float(self.area[i]) + mean * (time - float(self.time[i]))
@@ -49,7 +50,7 @@ class Course:
             if before * after < 0 and times[i + 1] > times[i]:
                 times.append(times[i] + (times[i + 1] - times[i]) * before / (before - after))
         areas = [self.area_to(t) for t in times]
-        return min(0.0, *areas), max(0.0, *areas)
+        return min(areas), max(areas)
 
     def _row(self, time: float) -> int:
         return max(0, int(np.searchsorted(self.time, time, side="right")) - 1)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gw_exudyn.model.course import Course
-from gw_exudyn.model.tip_speed import TipSpeed
+from gw_exudyn.model.tip_speed import Leg, TipSpeed
 
 if TYPE_CHECKING:
     from gw_exudyn.scenario import ForceDrive, SpeedDrive, TipSpeedDrive
@@ -21,15 +21,15 @@ if TYPE_CHECKING:
 class Drive:
     """A prescribed speed: a table until somebody takes over.
 
-    course : speed over time, m/s; its area is the travel. taken_over : empty, or (time, position, speed) from which on
-        the speed comes from outside and is constant.
+    course : speed over time, m/s; its area is the length inserted. taken_over : empty, or (time, position, speed) from
+        which on the speed comes from outside and is constant.
     """
 
     course: Course
     taken_over: tuple[float, ...] = ()
 
     def position_at(self, time: float) -> float:
-        """Travel since the start, m, at a time, s."""
+        """Length inserted, m, at a time, s."""
         if self.taken_over and time >= self.taken_over[0]:
             since, position, speed = self.taken_over
             return position + speed * (time - since)
@@ -49,7 +49,7 @@ class Drive:
         return float(np.abs(speeds).max())
 
     def extremes(self) -> tuple[float, float]:
-        """Least and largest travel up to the end of the table, m; a turning point inside a ramp is found too."""
+        """Least and largest length inserted until the table ends, m; a turning point inside a ramp is found too."""
         return self.course.extreme_areas()
 
     def taken_over_at(self, time: float, speed: float) -> Drive:
@@ -90,7 +90,7 @@ def build_drive(spec: SpeedDrive | ForceDrive | TipSpeedDrive) -> AnyDrive:
     """The drive of a scenario."""
     if spec.kind == "force":
         return Force(Course.of(spec.time, spec.force), spec.hub_mass, spec.hub_damping)
-    course = Course.of(spec.time, spec.speed)
+    course = Course.of(spec.time, spec.speed, spec.start)
     if spec.kind == "speed":
         return Drive(course)
-    return TipSpeed(course, spec.max_speed, spec.force_limit)
+    return TipSpeed(course, spec.max_speed, spec.force_limit, Leg(position=spec.start))

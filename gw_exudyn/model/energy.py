@@ -15,9 +15,14 @@ from numpy.typing import NDArray
 
 from gw_exudyn.model.contact import Contact
 from gw_exudyn.model.kernel import Motion
+from gw_exudyn.model.loads import LoadsInstant
 from gw_exudyn.model.wire import Wire
 
 Floats = NDArray[np.float64]
+
+
+NO_LOADS = LoadsInstant()
+"""Nothing but contact and drive acts on the wire."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +31,8 @@ class Energies:
 
     elastic (joints), wall (normal and tangential springs), kinetic : now. insertion_work (by the drive), friction_loss,
         damping_loss (joints and walls), numerical_loss : sums since the start.
-    start : stored at the start. largest_work : the largest of the work and of the stored energy so far.
+    load_work (by loads at the tip and the nose) : since the start.
+    start : stored at the start. largest_work : the largest of the works and of the stored energy so far.
     """
 
     elastic: float = 0.0
@@ -38,12 +44,15 @@ class Energies:
     numerical_loss: float = 0.0
     start: float = 0.0
     largest_work: float = 0.0
+    load_work: float = 0.0
 
     @property
     def error(self) -> float:
         """What does not add up, J."""
         stored = self.elastic + self.wall + self.kinetic - self.start
-        return self.insertion_work - stored - self.friction_loss - self.damping_loss - self.numerical_loss
+        return (
+            self.insertion_work + self.load_work - stored - self.friction_loss - self.damping_loss - self.numerical_loss
+        )
 
 
 @dataclass(frozen=True)
@@ -59,15 +68,16 @@ class Snapshot:
     travel: float
     elastic: float
     kinetic: float
+    loads: LoadsInstant = NO_LOADS
 
 
-def snapshot(wire: Wire, motion: Motion, push: float, travel: float) -> Snapshot:
+def snapshot(wire: Wire, motion: Motion, push: float, travel: float, loads: LoadsInstant = NO_LOADS) -> Snapshot:
     """This instant."""
     q, v = motion.q.copy(), motion.v.copy()
     bend = relative_angles(q[:, 2]) - wire.rest_angle
-    elastic = 0.5 * float(wire.joint_stiffness @ bend**2)
+    elastic = 0.5 * float(wire.joint_stiffness @ bend**2) + loads.elastic
     kinetic = 0.5 * float(wire.mass @ (v[:, 0] ** 2 + v[:, 1] ** 2) + wire.inertia @ v[:, 2] ** 2)
-    return Snapshot(q, v, push, travel, elastic, kinetic)
+    return Snapshot(q, v, push, travel, elastic, kinetic, loads)
 
 
 def relative_angles(angle: Floats) -> Floats:
@@ -102,19 +112,23 @@ def advanced(
     turned = relative_angles(moved[:, 2])
     bend = relative_angles(new.q[:, 2]) - wire.rest_angle
     walls = contact.summary()
-    friction, wall_damping, wall = walls.friction, walls.damping, walls.energy
+    friction, wall_damping = walls.friction, walls.damping
+    wall, wall_before = walls.energy + new.loads.stored, wall_before + old.loads.stored
     inertia = np.column_stack([wire.mass, wire.mass, wire.inertia]) * acceleration
     resisted = wire.joint_damping * relative_angles(new.v[:, 2])
     damping = float(wire.joint_damping @ turned**2) / step
     work = 0.5 * (old.push + new.push) * travelled
+    load_work = 0.5 * float((old.loads.effort + new.loads.effort) @ (new.loads.place - old.loads.place))
+    applied = contact.force + new.loads.force
+    in_tip = new.loads.elastic - old.loads.elastic
     # Work with the forces at the step's end, less what each force really stored or took.
     numerical = (
         0.5 * (old.push - new.push) * travelled
-        + float((wire.joint_stiffness * bend) @ turned) - (new.elastic - old.elastic)
+        + float((wire.joint_stiffness * bend) @ turned) - (new.elastic - old.elastic - in_tip)
         + float(resisted @ turned) - damping
         + float((inertia * moved).sum()) - (new.kinetic - old.kinetic)
-        - float((contact.force * moved).sum()) - (wall - wall_before) - friction - wall_damping
-        - _finite_turns(contact, old, new, inertia)
+        - float((applied * moved).sum()) + load_work - in_tip - (wall - wall_before) - friction - wall_damping
+        - _finite_turns(wire, old, new, inertia - applied)
     )  # fmt: skip
     stored = new.elastic + wall + new.kinetic
     return Energies(
@@ -126,18 +140,19 @@ def advanced(
         damping_loss=before.damping_loss + damping + wall_damping,
         numerical_loss=before.numerical_loss + numerical,
         start=before.start,
-        largest_work=max(before.largest_work, abs(before.insertion_work + work), stored),
+        largest_work=max(
+            before.largest_work, abs(before.insertion_work + work), abs(before.load_work + load_work), stored
+        ),
+        load_work=before.load_work + load_work,
     )
 
 
-def _finite_turns(contact: Contact, old: Snapshot, new: Snapshot, inertia: Floats) -> float:
+def _finite_turns(wire: Wire, old: Snapshot, new: Snapshot, needed: Floats) -> float:
     """J: work of the joints' forces because a rigid segment's end moves on an arc, not along the tangent at its place.
 
-    The force in joint i is what the distal part needs: its inertia less its contact forces.
+    needed : (n, 3), inertia less the forces on each segment. The force in joint i is what the distal part needs.
     """
-    wire = contact.wire
-    needed = (inertia - contact.force)[:, :2]
-    joint = np.cumsum(needed[::-1], axis=0)[::-1]
+    joint = np.cumsum(needed[::-1, :2], axis=0)[::-1]
     half = (wire.lengths / 2)[:, None]
     angle0, angle1 = old.q[:, 2], new.q[:, 2]
     direction0 = np.column_stack([np.cos(angle0), np.sin(angle0)])

@@ -35,6 +35,11 @@ class Frame:
         plane: Floats = np.asarray(points, dtype=float) @ self._rotation().T + self.origin
         return plane
 
+    def vectors_in(self, vectors: ArrayLike) -> Floats:
+        """(..., 2) vectors (forces) of the plane, in the catheter's frame."""
+        local: Floats = np.asarray(vectors, dtype=float) @ self._rotation()
+        return local
+
     def vectors_out(self, vectors: ArrayLike) -> Floats:
         """(..., 2) vectors (forces) of the catheter's frame, in the plane."""
         plane: Floats = np.asarray(vectors, dtype=float) @ self._rotation().T

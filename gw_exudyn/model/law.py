@@ -40,8 +40,10 @@ class Surroundings:
     ahead: float
 
 
-def surroundings(outline: Outline) -> Surroundings:
-    """Of an outline in the catheter's frame."""
+def surroundings(outline: Outline, bore: float) -> Surroundings:
+    """Of an outline in the catheter's frame; without a vessel the bore, m, is the only width there is."""
+    if not len(outline.points):
+        return Surroundings(bore, math.inf)
     a, b = outline.points, np.roll(outline.points, -1, axis=0)
     across = _crossings(a[:, ::-1] - [0.0, JUST_AHEAD], b[:, ::-1] - [0.0, JUST_AHEAD])
     above, below = across[across > 0], across[across <= 0]
@@ -78,7 +80,7 @@ def contact_law(scenario: Scenario, around: Surroundings) -> ContactLaw:
 
 def clearance(scenario: Scenario, around: Surroundings) -> float:
     """Gap, m, on either side of the wire where it lies in the middle of the bore, or of the lumen at the exit."""
-    narrowest = min(scenario.catheter.bore, max(around.width, scenario.wire.diameter * 1.001))
+    narrowest = min(bore_or_more(scenario), max(around.width, scenario.wire.diameter * 1.001))
     return (narrowest - scenario.wire.diameter) / 2
 
 
@@ -94,7 +96,7 @@ def estimated_force(scenario: Scenario, around: Surroundings) -> float:
     buckling load of a column, clamped and pinned, up to the wall ahead and some way into the catheter. Straightened:
     the three-point bending of a rest curvature over the chord whose sagitta is the clearance.
     """
-    wire, bore = scenario.wire, scenario.catheter.bore
+    wire, bore = scenario.wire, bore_or_more(scenario)
     width = max(around.width, 2 * wire.diameter)
     stiffness = mean_stiffness(wire.effective_stiffness, 5 * width)
     bend = stiffness / (2 * width**2)
@@ -136,6 +138,11 @@ def _snug(scenario: Scenario, around: Surroundings) -> list[str]:
         f"the wire has {gap * 1e6:.3g} um on either side in the catheter or the lumen: a fit this snug leaves its rest "
         "curvature no room and makes steps slow; give catheter.bore or the vessel a little more"
     ]
+
+
+def bore_or_more(scenario: Scenario) -> float:
+    """The catheter's bore, m; ten diameters of the wire where there is none."""
+    return scenario.catheter.bore or 10 * scenario.wire.diameter
 
 
 def value_or(value: float | None, otherwise: float) -> float:

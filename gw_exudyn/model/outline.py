@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    from gw_exudyn.scenario import ArcVessel, BranchesVessel, PolygonVessel, StraightVessel
+    from gw_exudyn.scenario import ArcVessel, BranchesVessel, NoVessel, PolygonVessel, StraightVessel
 
 Floats = NDArray[np.float64]
 
@@ -19,16 +19,18 @@ Floats = NDArray[np.float64]
 class Outline:
     """A closed outline with the lumen on its left.
 
-    points : (m, 2), m, counter-clockwise, the first not repeated. open_edges : indices of the edges (point i to i + 1)
-        that are open ends and no walls.
+    points : (m, 2), m, counter-clockwise, the first not repeated; none at all without a vessel. open_edges : indices
+        of the edges (point i to i + 1) that are open ends and no walls.
     """
 
     points: Floats
     open_edges: frozenset[int]
 
 
-def build_outline(vessel: StraightVessel | ArcVessel | BranchesVessel | PolygonVessel) -> Outline:
+def build_outline(vessel: StraightVessel | ArcVessel | BranchesVessel | PolygonVessel | NoVessel) -> Outline:
     """The outline of a vessel of a scenario, in the scenario's plane. The inlet of a channel is open."""
+    if vessel.kind == "none":
+        return Outline(np.zeros((0, 2)), frozenset())
     if vessel.kind == "polygon":
         return _without_straight_corners(Outline(np.array(vessel.points), frozenset(vessel.open_edges)))
     if vessel.kind == "branches":

@@ -76,10 +76,14 @@ class _Polyline:
 
 @dataclass(frozen=True)
 class Tube:
-    """The catheter in its own frame: the axis along +x, the exit at the origin. bore, length : m."""
+    """The catheter in its own frame: the axis along +x, the exit at the origin. bore, length : m.
+
+    walled : it has walls to touch; one that is not there has none.
+    """
 
     bore: float
     length: float
+    walled: bool = True
 
 
 def build_walls(
@@ -94,13 +98,16 @@ def build_walls(
     """All walls for a wire of `radius` (m). seam_reach : m, by which walls that run flush past the exit overlap.
     patches : of the vessel, with a friction of their own; walls are divided where one begins or ends."""
     lines = vessel_polylines(outline, tube)
-    flush = [_is_flush(lines, lip) for lip in _lips(tube)]
+    flush = [not tube.walled or _is_flush(lines, lip) for lip in _lips(tube)]
     shortest = radius / 4
     polylines = [
         _vessel_line(divided(line, patches, shortest, closed=closed), closed, tube, seam_reach)
         for line, closed in lines
     ]
-    polylines += _tube_polylines(tube, flush, seam_reach)
+    if tube.walled:
+        polylines += _tube_polylines(tube, flush, seam_reach)
+    if not polylines:
+        return _no_walls()
     parts = [_segments(line, radius) for line in polylines]
     corners = [_corners(line) for line in polylines]
     lips = np.array([lip for lip, is_flush in zip(_lips(tube), flush, strict=True) if not is_flush]).reshape(-1, 2)
@@ -115,6 +122,12 @@ def build_walls(
         corner_friction=np.where(corner_tube, tube_friction, friction_at(corner, patches, friction)),
         corner_tube=corner_tube,
     )
+
+
+def _no_walls() -> Walls:
+    plane, line = np.zeros((0, 2)), np.zeros(0)
+    no, none = np.zeros(0, np.bool_), np.zeros(0, np.int32)
+    return Walls(plane, plane, line, line, line, line, line, none, line, no, plane, line, no)
 
 
 def vessel_polylines(outline: Outline, tube: Tube) -> list[tuple[Floats, bool]]:

@@ -45,8 +45,8 @@ _ALLOWED_PERCENT = 1.0
 
 
 def plot_energy(result: Result) -> Figure:
-    """Draw the stored and lost energies stacked on each other over time, with the work of the drive as a line that
-    meets their sum.
+    """Draw the stored and lost energies stacked on each other over time, with the work of drive and loads as a line
+    that meets their sum.
 
     Terms below zero are stacked downwards. Below: what the balance leaves over, in percent of the largest work, with
     the band that is allowed.
@@ -62,7 +62,7 @@ def plot_energy(result: Result) -> Figure:
 
 def _draw_terms(axes: Axes, result: Result) -> None:
     tidy(axes)
-    work = result.values("insertion_work")
+    work = _work(result)
     terms = {name: np.nan_to_num(result.values(name)) for name, _ in _TERMS}
     unit, factor = shown("insertion_work", work, sum(terms.values(), np.zeros_like(work)))
     up, down = np.zeros_like(work), np.zeros_like(work)
@@ -72,7 +72,7 @@ def _draw_terms(axes: Axes, result: Result) -> None:
         axes.fill_between(result.time, up, up + np.maximum(values, 0), color=colour, linewidth=0, label=label)
         axes.fill_between(result.time, down, down + np.minimum(values, 0), color=colour, linewidth=0)
         up, down = up + np.maximum(values, 0), down + np.minimum(values, 0)
-    axes.plot(result.time, work * factor, color=BLACK, linewidth=1.6, label=QUANTITIES["insertion_work"].label)
+    axes.plot(result.time, work * factor, color=BLACK, linewidth=1.6, label=_work_label(result))
     axes.axhline(0.0, color=BLACK, linewidth=0.6)
     axes.set_ylabel(axis_label("energy", unit))
     axes.margins(x=0.0)
@@ -104,8 +104,17 @@ def _draw_error(axes: Axes, result: Result) -> None:
     axes.margins(x=0.0)
 
 
+def _work(result: Result) -> Floats:
+    """(t,) float, J. What drive and loads have put in."""
+    return result.values("insertion_work") + result.values("load_work")
+
+
+def _work_label(result: Result) -> str:
+    return "work of drive and loads" if result.values("load_work").any() else QUANTITIES["insertion_work"].label
+
+
 def _error_percent(result: Result) -> Floats:
     """(t,) float, percent. Zero throughout where no work was done."""
-    work, error = result.values("insertion_work"), result.values("energy_error")
+    work, error = _work(result), result.values("energy_error")
     largest = float(np.max(np.abs(work[np.isfinite(work)]), initial=0.0))
     return 100.0 * error / largest if largest > 0 else np.zeros_like(error)

@@ -28,6 +28,20 @@ def draw_vessel(axes: Axes, result: Result) -> None:
         axes.fill(*(tube * scale).T, facecolor=CATHETER_COLOUR, edgecolor="none", alpha=0.45, zorder=1)
     for line in result.catheter_outline:
         axes.plot(*(line * scale).T, color=CATHETER_COLOUR, linewidth=2.0, solid_capstyle="butt", zorder=3)
+    for centre, radius in _discs(result):
+        turn = np.linspace(0.0, 2 * np.pi, 65)
+        rim = (centre + radius * np.column_stack([np.cos(turn), np.sin(turn)])) * scale
+        axes.fill(*rim.T, facecolor=CATHETER_COLOUR, edgecolor=WALL_COLOUR, linewidth=1.0, zorder=3)
+
+
+def _discs(result: Result) -> list[tuple[Floats, float]]:
+    """Centre and radius, m, of the supports, and of the nose where it is at the end."""
+    discs = [(np.array(support.at), support.radius) for support in result.scenario.supports]
+    nose = result.scenario.nose
+    if nose is not None:
+        way = np.array([np.cos(nose.direction), np.sin(nose.direction)]) * result.values("nose_travel")[-1]
+        discs.append((np.array(nose.at) + way, nose.radius))
+    return discs
 
 
 def enclosed(lines: Sequence[Floats]) -> Floats | None:

@@ -13,13 +13,14 @@ if TYPE_CHECKING:
     from gw_exudyn.scenario.catalogue import CatalogueWire, catalogue_names, load_catalogue
     from gw_exudyn.scenario.drive import SpeedDrive
     from gw_exudyn.scenario.loading import load_scenario, scenario_from_dict
+    from gw_exudyn.scenario.loads import DiscSpec, NoseSpec, TipSpec
     from gw_exudyn.scenario.other_drives import ForceDrive, TipSpeedDrive
     from gw_exudyn.scenario.schema import CatheterSpec, ContactSpec, OutputSpec, Scenario, SolverSpec, json_schema
     from gw_exudyn.scenario.shipped import list_shipped, resolve, shipped_folder
     from gw_exudyn.scenario.stiffness import StiffnessPiece
     from gw_exudyn.scenario.stop import StopSpec, TargetSpec
     from gw_exudyn.scenario.units import format_quantity, parse_quantity, parse_unit
-    from gw_exudyn.scenario.vessel import ArcVessel, PolygonVessel, StraightVessel
+    from gw_exudyn.scenario.vessel import ArcVessel, NoVessel, PolygonVessel, StraightVessel
     from gw_exudyn.scenario.wire import TipShape, WireSpec
 
 _HOME = {
@@ -28,7 +29,10 @@ _HOME = {
     "CatalogueWire": "catalogue",
     "CatheterSpec": "schema",
     "ContactSpec": "schema",
+    "DiscSpec": "loads",
     "ForceDrive": "other_drives",
+    "NoVessel": "vessel",
+    "NoseSpec": "loads",
     "OutputSpec": "schema",
     "PolygonVessel": "vessel",
     "Scenario": "schema",
@@ -40,6 +44,7 @@ _HOME = {
     "TargetSpec": "stop",
     "TipSpeedDrive": "other_drives",
     "TipShape": "wire",
+    "TipSpec": "loads",
     "WireSpec": "wire",
     "catalogue_names": "catalogue",
     "format_quantity": "units",
@@ -60,7 +65,10 @@ __all__ = [
     "CatalogueWire",
     "CatheterSpec",
     "ContactSpec",
+    "DiscSpec",
     "ForceDrive",
+    "NoVessel",
+    "NoseSpec",
     "OutputSpec",
     "PolygonVessel",
     "Scenario",
@@ -71,6 +79,7 @@ __all__ = [
     "StraightVessel",
     "TargetSpec",
     "TipShape",
+    "TipSpec",
     "TipSpeedDrive",
     "WireSpec",
     "catalogue_names",

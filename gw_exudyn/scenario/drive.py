@@ -9,6 +9,7 @@ from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator,
 
 from gw_exudyn.scenario.course import check_table
 from gw_exudyn.scenario.fields import KIND_TAG, Choice, Faults, Form, Section, wrong
+from gw_exudyn.scenario.hold import Hold, Start
 from gw_exudyn.scenario.kinds import DURATION, RAMP, SPEED, SPEED_OR_NONE, SPEED_TABLE, TRAVEL
 from gw_exudyn.scenario.other_drives import ForceDrive, ForceForm, TipSpeedDrive, TipSpeedForm
 from gw_exudyn.scenario.units import format_quantity
@@ -26,11 +27,15 @@ class SpeedDrive(Section):
 
     time : s, begins at 0, never falls; two equal times make a step. speed : m/s, as many; positive pushes in. The
         drive ends at time[-1].
+    start : m, length inserted at the start. hold : of the proximal end: `clamped`, `pinned` (it may turn), `axial` (it
+        may also move square to the axis).
     """
 
     kind: Literal["speed"] = "speed"
     time: tuple[float, ...]
     speed: tuple[float, ...]
+    start: float = 0.0
+    hold: str = "clamped"
 
     @property
     def duration(self) -> float:
@@ -39,7 +44,8 @@ class SpeedDrive(Section):
 
     def to_plain(self) -> dict[str, Any]:
         """The drive as a file could hold it: its table."""
-        return {"kind": self.kind, "table": [list(row) for row in zip(self.time, self.speed, strict=True)]}
+        table = [list(row) for row in zip(self.time, self.speed, strict=True)]
+        return {"kind": self.kind, "start": self.start, "hold": self.hold, "table": table}
 
 
 class PhaseForm(Section):
@@ -87,6 +93,8 @@ class DriveForm(Section):
     table: Annotated[tuple[tuple[float, float], ...] | None, SPEED_TABLE] = Field(
         default=None, description="[[time, speed], ...] from time 0, linear in between; two equal times make a step"
     )
+    start: Start = 0.0
+    hold: Hold = "clamped"
 
     @field_validator("phases", mode="before")
     @classmethod
@@ -120,6 +128,9 @@ class DriveForm(Section):
 
     def resolve(self) -> SpeedDrive:
         """The table of speed against time. Raises ValidationError for a phase that is shorter than its ramp."""
+        return self._table().model_copy(update={"start": self.start, "hold": self.hold})
+
+    def _table(self) -> SpeedDrive:
         if self.table is not None:
             return SpeedDrive(time=tuple(t for t, _ in self.table), speed=tuple(v for _, v in self.table))
         if self.phases is not None:

@@ -9,6 +9,7 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from gw_exudyn.scenario.course import check_course, course_rows
 from gw_exudyn.scenario.fields import Section, wrong
+from gw_exudyn.scenario.hold import Hold, Start
 from gw_exudyn.scenario.kinds import (
     DURATION,
     FORCE_LIMIT,
@@ -28,7 +29,7 @@ class ForceDrive(Section):
     """A force along the catheter's axis on a hub that holds the wire, piecewise linear in time.
 
     time : s, begins at 0, never falls; two equal times make a step. force : N, as many; positive pushes in. hub_mass :
-        kg. hub_damping : N s/m. The drive ends at time[-1].
+        kg. hub_damping : N s/m. start, hold : as of SpeedDrive. The drive ends at time[-1].
     """
 
     kind: Literal["force"] = "force"
@@ -36,6 +37,8 @@ class ForceDrive(Section):
     force: tuple[float, ...]
     hub_mass: float
     hub_damping: float
+    start: float = 0.0
+    hold: str = "clamped"
 
     @property
     def duration(self) -> float:
@@ -45,7 +48,8 @@ class ForceDrive(Section):
     def to_plain(self) -> dict[str, Any]:
         """The drive as a file could hold it."""
         rows = [list(row) for row in zip(self.time, self.force, strict=True)]
-        return {"kind": self.kind, "table": rows, "hub_mass": self.hub_mass, "hub_damping": self.hub_damping}
+        hub = {"hub_mass": self.hub_mass, "hub_damping": self.hub_damping}
+        return {"kind": self.kind, "start": self.start, "hold": self.hold, "table": rows, **hub}
 
 
 class ForceForm(Section):
@@ -69,6 +73,15 @@ class ForceForm(Section):
         description="damping of the hub: a wire that nothing holds moves with force / hub_damping",
         examples=["5 N*s/m"],
     )
+    start: Start = 0.0
+    hold: Hold = "clamped"
+
+    @field_validator("hold", mode="after")
+    @classmethod
+    def _on_its_axis(cls, hold: str) -> str:
+        if hold == "axial":
+            raise wrong("a hub that a force pushes moves along the axis alone; take hold: clamped or pinned")
+        return hold
 
     @model_validator(mode="after")
     def _one_form(self) -> Self:
@@ -83,6 +96,8 @@ class ForceForm(Section):
             force=tuple(f for _, f in rows),
             hub_mass=self.hub_mass,
             hub_damping=self.hub_damping,
+            start=self.start,
+            hold=self.hold,
         )
 
 
@@ -90,7 +105,8 @@ class TipSpeedDrive(Section):
     """A wanted speed of the tip along its path, piecewise linear in time, which a controller of the hub's speed serves.
 
     time : s, begins at 0, never falls; two equal times make a step. speed : m/s, as many, never negative. max_speed :
-        m/s, of the hub, which never moves back. force_limit : N, of the push force. The drive ends at time[-1].
+        m/s, of the hub, which never moves back. force_limit : N, of the push force. start, hold : as
+        of SpeedDrive. The drive ends at time[-1].
     """
 
     kind: Literal["tip_speed"] = "tip_speed"
@@ -98,6 +114,8 @@ class TipSpeedDrive(Section):
     speed: tuple[float, ...]
     max_speed: float
     force_limit: float
+    start: float = 0.0
+    hold: str = "clamped"
 
     @property
     def duration(self) -> float:
@@ -108,7 +126,8 @@ class TipSpeedDrive(Section):
         """The drive as a file could hold it."""
         rows = [list(row) for row in zip(self.time, self.speed, strict=True)]
         limit = {} if math.isinf(self.force_limit) else {"force_limit": self.force_limit}
-        return {"kind": self.kind, "table": rows, "max_speed": self.max_speed, **limit}
+        held = {"start": self.start, "hold": self.hold}
+        return {"kind": self.kind, **held, "table": rows, "max_speed": self.max_speed, **limit}
 
 
 class TipSpeedForm(Section):
@@ -133,6 +152,8 @@ class TipSpeedForm(Section):
     force_limit: Annotated[float | None, FORCE_LIMIT] = Field(
         default=None, description="push force at which the hub is held; no limit if not given"
     )
+    start: Start = 0.0
+    hold: Hold = "clamped"
 
     @field_validator("max_speed", mode="after")
     @classmethod
@@ -156,4 +177,6 @@ class TipSpeedForm(Section):
             speed=tuple(v for _, v in rows),
             max_speed=self.max_speed,
             force_limit=math.inf if self.force_limit is None else self.force_limit,
+            start=self.start,
+            hold=self.hold,
         )

@@ -70,6 +70,8 @@ class Lumen(Section):
         flat = places.reshape(-1, 2)
         dots = shapely.points(np.where(np.isfinite(flat), flat, 1e9))
         regions = list(_regions_of(self).values())
+        if not regions:
+            return np.full(places.shape[:-1], "")
         apart = np.array([shapely.distance(shapely.Polygon(region.outline), dots) for region in regions])
         nearest = np.argmin(apart, axis=0)  # the first of equals
         names = np.array([*(region.name for region in regions), ""])

@@ -15,7 +15,7 @@ from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
 from gw_exudyn.errors import Problem
 from gw_exudyn.scenario.drive import Drive
-from gw_exudyn.scenario.fields import Section, Text, wrong
+from gw_exudyn.scenario.fields import Faults, Section, Text, wrong
 from gw_exudyn.scenario.friction import FrictionPatch
 from gw_exudyn.scenario.kinds import (
     ANGLE,
@@ -24,12 +24,14 @@ from gw_exudyn.scenario.kinds import (
     FRICTION_OR_NONE,
     OUTPUT_INTERVAL,
     POINT,
+    RESIDUAL,
     SMALLEST_STEP,
     SOLVER_STEP,
     TOLERANCE,
     WALL_DAMPING,
     WALL_STIFFNESS,
 )
+from gw_exudyn.scenario.loads import DiscSpec, NoseSpec, TipSpec
 from gw_exudyn.scenario.problems import place_of
 from gw_exudyn.scenario.stop import StopSpec
 from gw_exudyn.scenario.vessel import Vessel
@@ -38,6 +40,7 @@ from gw_exudyn.scenario.words import shown
 from gw_exudyn.scenario.yaml_source import Place
 
 MOST_OUTPUTS = 1_000_000
+MOST_SUPPORTS = 100
 _NAME = re.compile(r"\w[\w.+-]{0,99}")
 
 
@@ -45,7 +48,7 @@ class CatheterSpec(Section):
     """The straight, fixed tube that holds the proximal part of the wire; the tip starts at its exit.
 
     exit : (x, y), m. direction : rad, of the axis, pointing into the vessel, from +x to the left. bore : m, inner
-        diameter.
+        diameter; None where there is no tube and only the drive holds the wire.
     friction_coefficient : None takes the contact's.
     """
 
@@ -57,7 +60,11 @@ class CatheterSpec(Section):
     direction: Annotated[float, ANGLE] = Field(
         default=0.0, description="direction of the axis into the vessel, from +x to the left"
     )
-    bore: Annotated[float, BORE] = Field(description="inner diameter", examples=["1.2 mm"])
+    bore: Annotated[float | None, BORE] = Field(
+        default=None,
+        description="inner diameter; may be left out where the vessel is none: there is no tube then",
+        examples=["1.2 mm"],
+    )
     friction_coefficient: Annotated[float | None, FRICTION_OR_NONE] = Field(
         default=None, description="friction in it; the contact's if not given"
     )
@@ -94,7 +101,7 @@ class ContactSpec(Section):
 
 class SolverSpec(Section):
     """Steps of the solver. step, minimum_step : s, nominal and smallest. tolerance : relative, of the Newton
-    iteration.
+    iteration; absolute_tolerance : N, a residual that is good enough whatever it was at first.
     """
 
     what: ClassVar[str] = "the solver"
@@ -102,6 +109,9 @@ class SolverSpec(Section):
     step: Annotated[float, SOLVER_STEP] = Field(default=0.05, description="nominal step")
     tolerance: Annotated[float, TOLERANCE] = Field(
         default=1e-6, description="relative tolerance of the Newton iteration"
+    )
+    absolute_tolerance: Annotated[float, RESIDUAL] = Field(
+        default=1e-7, description="residual of the Newton iteration that is good enough whatever it was at first"
     )
     minimum_step: Annotated[float, SMALLEST_STEP] = Field(
         default=1e-6, description="smallest step to which it is cut back"
@@ -140,6 +150,11 @@ class Scenario(Section):
     )
     contact: ContactSpec = Field(default=ContactSpec(), description="contact and friction")
     drive: Drive = Field(description="what moves the wire", examples=["{kind: speed, speed: 2 mm/s, distance: 60 mm}"])
+    tip: TipSpec = Field(default=TipSpec(), description="what holds the tip, and the loads on it")
+    supports: tuple[DiscSpec, ...] = Field(
+        default=(), description="fixed discs on which the wire lies", examples=["[{at: [20 mm, -2 mm], radius: 1 mm}]"]
+    )
+    nose: NoseSpec | None = Field(default=None, description="a moving disc that presses on the wire")
     stop: StopSpec = Field(default=StopSpec(), description="what ends the run before the drive does")
     solver: SolverSpec = Field(default=SolverSpec(), description="steps of the solver")
     output: OutputSpec = Field(default=OutputSpec(), validate_default=True, description="what is kept")
@@ -154,7 +169,35 @@ class Scenario(Section):
             raise wrong(f"{shown(name)} cannot name a folder; {allowed}")
         return name
 
-    @field_validator("contact", "stop", "solver", "output", mode="before")
+    @field_validator("catheter", mode="after")
+    @classmethod
+    def _has_a_bore(cls, catheter: CatheterSpec, info: ValidationInfo) -> CatheterSpec:
+        vessel = info.data.get("vessel")
+        if catheter.bore is None and vessel is not None and vessel.kind != "none":
+            faults = Faults()
+            faults.add(("bore",), wrong("is missing: inner diameter; for example bore: 1.2 mm", missing=True))
+            faults.raise_if_any()
+        return catheter
+
+    @field_validator("tip", mode="after")
+    @classmethod
+    def _free_to_be_driven(cls, tip: TipSpec, info: ValidationInfo) -> TipSpec:
+        drive = info.data.get("drive")
+        if drive is not None and drive.kind == "tip_speed" and tip.hold != "free" and tip.slides != "along":
+            faults = Faults()
+            text = f"a tip that is {tip.hold} here cannot have the speed that a drive of kind tip_speed wants; "
+            faults.add(("hold",), f"{text}let it be free or slide along, or take a drive of kind speed or force")
+            faults.raise_if_any()
+        return tip
+
+    @field_validator("supports", mode="before")
+    @classmethod
+    def _not_too_many_supports(cls, supports: Any) -> Any:
+        if isinstance(supports, list | tuple) and len(supports) > MOST_SUPPORTS:
+            raise wrong(f"has {len(supports)} items; at most {MOST_SUPPORTS} are allowed")
+        return () if supports is None else supports
+
+    @field_validator("contact", "tip", "stop", "solver", "output", mode="before")
     @classmethod
     def _empty_is_default(cls, value: Any) -> Any:
         return {} if value is None else value  # a section whose lines are all commented out

@@ -28,13 +28,24 @@ from gw_exudyn.scenario.outline import (
     closed,
     counter_clockwise,
 )
-from gw_exudyn.scenario.regions import Lumen
+from gw_exudyn.scenario.regions import Lumen, Region
 from gw_exudyn.scenario.words import shown
 
-VESSEL_KINDS = Choice(("straight", "arc", "branches", "centreline", "polygon", "file"))
+VESSEL_KINDS = Choice(("straight", "arc", "branches", "centreline", "polygon", "file", "none"))
 _STEEPEST_FACET = math.radians(45)
 
 _END = Field(default="open", description="open: the far end is no wall; dead: it is closed")
+
+
+class NoVessel(Lumen):
+    """No vessel: nothing stands in the wire's way."""
+
+    what: ClassVar[str] = "no vessel"
+
+    kind: Annotated[Literal["none"], Choice(("none",))]
+
+    def _regions(self) -> tuple[Region, ...]:
+        return ()
 
 
 class StraightVessel(Lumen):
@@ -261,7 +272,8 @@ VesselForm = Annotated[
     | Annotated[BranchesVessel, Tag(f"{KIND_TAG}branches")]
     | Annotated[CentrelineForm, Tag(f"{KIND_TAG}centreline")]
     | Annotated[VesselFile, Tag(f"{KIND_TAG}file")]
-    | Annotated[PolygonForm, Tag(f"{KIND_TAG}polygon")],
+    | Annotated[PolygonForm, Tag(f"{KIND_TAG}polygon")]
+    | Annotated[NoVessel, Tag(f"{KIND_TAG}none")],
     Discriminator(_tag),
 ]
 """What a file may hold."""
@@ -281,7 +293,7 @@ def _check_kind(vessel: Any) -> None:
 
 
 Vessel = Annotated[
-    StraightVessel | ArcVessel | BranchesVessel | PolygonVessel,
-    Form(VesselForm, (StraightVessel, ArcVessel, BranchesVessel, PolygonVessel), check=_check_kind),
+    StraightVessel | ArcVessel | BranchesVessel | PolygonVessel | NoVessel,
+    Form(VesselForm, (StraightVessel, ArcVessel, BranchesVessel, PolygonVessel, NoVessel), check=_check_kind),
 ]
 """The vessel as the program sees it, read from any of the forms."""

@@ -26,6 +26,8 @@ class StandInScenario:
 
     name: str = "corner90-universal"
     wire: StandInWire = field(default_factory=StandInWire)
+    supports: tuple[Any, ...] = ()
+    nose: Any = None
 
     def to_dict(self) -> dict[str, Any]:
         return {"name": self.name, "wire": {"diameter": self.wire.diameter, "model": self.wire.model}}

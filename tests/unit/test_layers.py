@@ -27,6 +27,7 @@ MAY_IMPORT = {
     "trust": ABOVE_RESULT | {"model", "engine"},
     "events": ABOVE_RESULT | {"model", "engine"},
     "simulation": ABOVE_RESULT | {"model", "engine", "sampling", "trust", "events"},
+    "rl": ABOVE_RESULT | {"model", "simulation"},
     "fmi": ABOVE_RESULT | {"model", "engine", "simulation"},
     "verification": ABOVE_RESULT
     | {"metrics", "comparison", "plots", "storage", "model", "engine", "trust", "simulation"},

@@ -70,7 +70,12 @@ def test_the_resolved_scenario_is_a_scenario_again_and_can_be_shown(changes: dic
          "drive.duration: stands beside table; the table says it all, remove it"),
         ({"drive": {**FORCE, "ramp": "50 s"}}, "drive.ramp: 50 s is longer than the drive lasts; shorten it"),
         ({"drive": {**FORCE, "speed": 1}}, "drive.speed: unknown key; allowed: kind, force, duration, ramp, table, "
-                                           "hub_mass, hub_damping"),
+                                           "hub_mass, hub_damping, start, hold"),
+        ({"drive": {**FORCE, "hold": "axial"}},
+         "drive.hold: a hub that a force pushes moves along the axis alone; take hold: clamped or pinned"),
+        ({"drive": TIP, "tip": {"hold": "pinned"}},
+         "tip.hold: a tip that is pinned here cannot have the speed that a drive of kind tip_speed wants; let it be "
+         "free or slide along, or take a drive of kind speed or force"),
         ({"drive": {**FORCE, "hub_damping": 0}}, "drive.hub_damping: 0 N*s/m is outside the plausible 0.001 N*s/m to "
                                                  "1e+06 N*s/m"),
         ({"drive": {**TIP, "speed": "-1 mm/s"}}, "drive.speed: -1 mm/s is outside the plausible 0 mm/s to 1000 mm/s"),

@@ -293,8 +293,10 @@ def test_a_flush_bore_at_an_angle_stays_flush():
 
 
 def test_the_lumens_width_is_taken_just_past_the_exit():
-    assert surroundings(channel()).width == pytest.approx(4e-3)
-    assert surroundings(polygon((-5, -1), (30, -3), (30, 2), (-5, 2))).width == pytest.approx(2e-3 + 9e-3 / 7, rel=1e-4)
+    assert surroundings(channel(), BORE * MM).width == pytest.approx(4e-3)
+    assert surroundings(polygon((-5, -1), (30, -3), (30, 2), (-5, 2)), BORE * MM).width == pytest.approx(
+        2e-3 + 9e-3 / 7, rel=1e-4
+    )
 
 
 def test_the_catheter_is_drawn_behind_its_exit():

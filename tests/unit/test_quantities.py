@@ -21,7 +21,8 @@ from gw_exudyn.quantities import (
 COLUMNS = (
     "time insertion_depth tip_x tip_y tip_angle push_force tip_force wall_force_x wall_force_y wall_force_normal "
     "wall_force_max contacts penetration_max insertion_work elastic_energy wall_energy kinetic_energy friction_loss "
-    "damping_loss numerical_loss energy_error"
+    "damping_loss numerical_loss energy_error load_work support_force_x support_force_y nose_force nose_travel "
+    "tip_hold_force_x tip_hold_force_y"
 )
 
 

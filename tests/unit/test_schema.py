@@ -178,11 +178,11 @@ def test_numpy_numbers_are_numbers() -> None:
         ({"vessel": {"kind": "branches"}}, ["vessel.branches: is missing: the branches; for example branches: [{name: "
                                             "main, points: [[0 mm, 0 mm], [40 mm, 0 mm]], diameter: 4 mm}]"]),
         ({"vessel.kind": "strait"}, ["vessel.kind: 'strait' is not known here; did you mean 'straight'? allowed: "
-                                     "straight, arc, branches, centreline, polygon, file"]),
+                                     "straight, arc, branches, centreline, polygon, file, none"]),
         ({"vessel.kind": REMOVE}, ["vessel.kind: is missing: what the vessel is; allowed: straight, arc, "
-                                   "branches, centreline, polygon, file"]),
+                                   "branches, centreline, polygon, file, none"]),
         ({"vessel": 3}, ["vessel: 3 stands where a vessel is needed: lines of 'key: value', the first kind: straight "
-                         "| arc | branches | centreline | polygon | file"]),
+                         "| arc | branches | centreline | polygon | file | none"]),
         ({"vessel.end": "closed"}, ["vessel.end: 'closed' is not known here; allowed: open, dead"]),
         ({"vessel.length": REMOVE}, ["vessel.length: is missing: length along x; for example length: 100 mm"]),
         ({"vessel": {"kind": "arc", "radius": "2 mm", "angle": "90 deg", "diameter": "4 mm"}},

@@ -269,10 +269,11 @@ class Kernel:
         )
         return body, ahead, offset
 
-    def add_turning(self, motion: Motion, reaction: Floats, *, stiffening: bool) -> None:
-        """Add to `tangent` how the joints' forces, minus `reaction` (2 n,), N, turn the segments as they turn."""
+    def add_turning(self, motion: Motion, tangent: Floats, reaction: Floats, *, stiffening: bool) -> None:
+        """Add to a tangent (9 n,) how the joints' forces, minus `reaction` (2 n,), N, turn the segments as they
+        turn."""
         self._library.gw_contact_turning(
-            self._address, motion.address, reaction.ctypes.data, stiffening, self._outputs[1]
+            self._address, motion.address, reaction.ctypes.data, stiffening, tangent.ctypes.data
         )
 
     def share_to_touch(self, before: Motion, nodes: Pairs, corners: Pairs) -> float:
