@@ -5,12 +5,14 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 RUNS := results/runs
 WIRES := corner90-universal corner90-amplatz
+STUDY := fig4 fig6 fig8 fig9 table2 reach pull_back constant_force uncertainty findings
 
-.PHONY: help run test verify mutate lint format kernels clean
+.PHONY: help run paper test verify mutate lint format kernels clean
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make run      simulate both wires round the corner and draw them side by side"
+	@echo "make paper    rerun the study of Sharei et al. 2019: every figure and table into results/paper"
 	@echo "make test     run the test suite"
 	@echo "make verify   show and write the evidence that the physics is right"
 	@echo "make mutate   make errors in the physics on purpose, and see that tests notice each"
@@ -24,6 +26,9 @@ run: $(VENV)/.ready
 	@drawn=`$(BIN)/gw-exudyn plot $(WIRES:%=$(RUNS)/%) --figure insertion` && \
 	  echo "Results: $(WIRES:%=$(RUNS)/%)" && \
 	  echo "Figure:  `echo "$$drawn" | grep png`"
+
+paper: $(VENV)/.ready-dev
+	@for script in $(STUDY); do $(BIN)/python scenarios/paper/$$script.py || exit 1; done
 
 test: $(VENV)/.ready-dev
 	$(BIN)/python -m pytest

@@ -1,7 +1,7 @@
 """Insertion at constant force: how far a wire gets, and how fast, when it is pushed with a force instead of a speed.
 
-The paper says that "a defined force" moves its wires, and shows none. Here the hub is pushed with a constant force against
-a damper; where the wire needs more than that force, it stops.
+The paper says that "a defined force" moves its wires, and shows none. Here the hub is pushed with a constant force
+against a damper; where the wire needs more than that force, it stops.
 """
 
 from __future__ import annotations

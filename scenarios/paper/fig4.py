@@ -1,7 +1,7 @@
 """Fig. 4 and Eq. 1: three-point bending of both wires at five stations, apparent against true bending stiffness.
 
-The values that the paper measured are quoted in no text that we have. Ours are the catalogue's ESTIMATE, put through the
-same test: what a step of EI does to the apparent value, and whether the load cell could have seen it. The resolution of
+The values that the paper measured are quoted in no text that we have. Ours are the catalogue's ESTIMATE, put through
+the same test: what a step of EI does to the apparent value, and whether the load cell could have seen it. The resolution of
 the cells is not in the paper; ASSUMED is 0.1 % of full scale.
 """
 
@@ -107,7 +107,9 @@ def _draw(rows: list[dict[str, Any]]) -> Any:
                 color=colour, label=f"apparent, Eq. 1, best EI, ± {RESOLUTION:.1%} of a {name} cell",
             )  # fmt: skip
         for estimate, marker in (("low", "v"), ("high", "^")):
-            axes.plot(place, apparent[estimate], marker, color=COLOURS[wire], alpha=0.5, label=f"apparent, {estimate} EI")
+            axes.plot(
+                place, apparent[estimate], marker, color=COLOURS[wire], alpha=0.5, label=f"apparent, {estimate} EI"
+            )
         axes.set_yscale("log")
         axes.set_ylim(0.3, 800)
         axes.set_xlim(0, 150)
@@ -115,7 +117,9 @@ def _draw(rows: list[dict[str, Any]]) -> Any:
         axes.set_xlabel("distance from the tip [mm]")
         if number == 0:
             axes.set_ylabel(axis_label("bending stiffness EI", "N mm²"))
-        axes.set_title(f"({'ab'[number]}) {TITLES[wire]}: an estimate, not the paper's values", loc="left", fontsize=9.5)
+        axes.set_title(
+            f"({'ab'[number]}) {TITLES[wire]}: an estimate, not the paper's values", loc="left", fontsize=9.5
+        )
         axes.legend(fontsize=8, frameon=False, loc="upper left" if wire == "universal" else "lower right")
     return figure
 

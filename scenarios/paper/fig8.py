@@ -10,14 +10,12 @@ from pathlib import Path
 
 import numpy as np
 import shared
+from corners import CORNERS
 from shared import COLOURS, ESTIMATES, OUT, TITLES, WIRES
 
 from gw_exudyn import Result
 from gw_exudyn.plots import save_figure
 from gw_exudyn.plots.style import NOTE_COLOUR, axis_label, new_figure, tidy
-
-CORNERS = {"left": "first", "target": "second"}
-"""What it means that the tip comes into a branch of the phantom."""
 
 FORCE = "wall_force_y"
 
@@ -82,10 +80,8 @@ def _mark_corners(axes: object, result: Result) -> None:
     for branch, time in shared.entries(result).items():
         if branch in CORNERS:
             axes.axvline(time, color=NOTE_COLOUR, linewidth=0.9, linestyle=(0, (4, 3)))
-            axes.annotate(
-                f" tip past the {CORNERS[branch]} corner", (time, 0.98), xycoords=("data", "axes fraction"), fontsize=8.5,
-                va="top", color=NOTE_COLOUR,
-            )  # fmt: skip
+            words, where = f" tip past the {CORNERS[branch]} corner", ("data", "axes fraction")
+            axes.annotate(words, (time, 0.98), xycoords=where, fontsize=8.5, va="top", color=NOTE_COLOUR)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Pull-back: push force against insertion depth, in and out again, and what the loop between them costs.
 
-The paper moves its wires one way. Pulled back, the same wire takes another force at the same depth: friction turns round,
-and the wire lies along other walls.
+The paper moves its wires one way. Pulled back, the same wire takes another force at the same depth: friction turns
+round, and the wire lies along other walls.
 """
 
 from __future__ import annotations

@@ -83,10 +83,8 @@ def _cases(quick: bool) -> dict[tuple[str, str, int, int], Case]:
 def _outcome(result: Result) -> dict[str, Any]:
     numbers = metrics(result)
     along = _along_branch(result)
-    if along[-1] >= FAR:
-        outcome = "reached"
-    else:
-        outcome = "drawn out" if along.max() >= FAR / 2 else "passed by"
+    missed = "drawn out" if along.max() >= FAR / 2 else "passed by"
+    outcome = "reached" if along[-1] >= FAR else missed
     trusted = result.status.status.trusted
     return {
         "outcome": outcome if trusted else "no answer",
@@ -133,7 +131,7 @@ def _draw(rows: list[dict[str, Any]]) -> Any:
     _add_bar(figure, panels, norm, colours)
     figure.suptitle(
         "Largest force of one contact [mN] where the wire reaches 30 mm into the branch.  "
-        "–: passes by;  ↩: enters, and is drawn out again;  ?: run not to be trusted",
+        "–: passes by;  ↩: enters, and is drawn out again;  ?: run not to be trusted",  # noqa: RUF001
         fontsize=10, x=0.01, ha="left",
     )  # fmt: skip
     return figure
@@ -153,7 +151,7 @@ def _draw_cell(axes: Any, x: int, y: int, row: dict[str, Any], colours: Any, nor
     reached = row["outcome"] == "reached"
     face = colours(norm(force)) if reached else "#EDEDED"
     axes.add_patch(Rectangle((x - 0.5, y - 0.5), 1, 1, facecolor=face, edgecolor="white", linewidth=1.0))
-    sign = {"passed by": "–", "drawn out": "↩", "no answer": "?"}.get(row["outcome"])
+    sign = {"passed by": "–", "drawn out": "↩", "no answer": "?"}.get(row["outcome"])  # noqa: RUF001
     dark = reached and norm(force) > 0.5
     axes.text(
         x, y, sign or f"{force:.0f}", ha="center", va="center", fontsize=8.5,

@@ -1,4 +1,4 @@
-"""What the scripts of the paper's study share: runs on two cores, tables and figures that repeat byte for byte, timings.
+"""What the scripts of the paper's study share: runs on two cores, tables that repeat byte for byte, timings.
 
 Every script has `main(out, quick)`. `quick` runs a short and coarse version of all of it, for tests and for looking.
 """
@@ -70,9 +70,7 @@ def whole(result: Result) -> Result:
     return result
 
 
-def run_all(
-    script: str, cases: Mapping[Key, Case], out: Path, keep: Callable[[Result], Any] = whole
-) -> dict[Key, Any]:
+def run_all(script: str, cases: Mapping[Key, Case], out: Path, keep: Callable[[Result], Any] = whole) -> dict[Key, Any]:
     """Run all cases and return what `keep` (a function of a module) makes of each, by key and in the cases' order.
 
     How long each took goes into timings.csv, in place of what the script wrote there before.

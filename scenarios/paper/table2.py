@@ -35,16 +35,22 @@ Runs = dict[tuple[str, str, str, int], Result]
 
 
 def main(out: Path = OUT, quick: bool = False) -> None:
-    """Run, draw, and write fig7.csv (paths), table2.csv, table2-orders.csv and table2-times.csv (not compared)."""
+    """Run, draw, and write fig7.csv (paths), table2.csv and table2-orders.csv; times stand in timings.csv."""
     segments, reference = ((10, 20), 40) if quick else (SEGMENTS, REFERENCE)
     runs: Runs = shared.run_all("table2", _cases(segments, reference, quick), out)
     shared.check(runs.values())
     rows = [_row(key, result, runs, reference) for key, result in runs.items() if key[3] != reference]
     shared.write_table(out / "table2.csv", rows)
     shared.write_table(out / "table2-orders.csv", _orders(rows))
-    shared.write_table(out / "fig7.csv", _paths(runs))
-    save_figure(_draw_paths(runs, segments, reference), out / "fig7")
-    save_figure(_draw_errors(rows, segments), out / "table2-error")
+    shared.write_table(out / "fig7.csv", _paths(runs, reference))
+    draw(out, segments, reference, next(iter(runs.values())))
+
+
+def draw(out: Path, segments: tuple[int, ...], reference: int, any_run: Result) -> None:
+    """Figures of the tables as they stand in the folder. any_run : shows the vessel."""
+    paths = shared.read_table(out / "fig7.csv")
+    save_figure(_draw_paths(paths, segments, reference, any_run), out / "fig7")
+    save_figure(_draw_errors(shared.read_table(out / "table2.csv"), segments), out / "table2-error")
 
 
 def _cases(segments: tuple[int, ...], reference: int, quick: bool) -> dict[tuple[str, str, str, int], Case]:
@@ -108,50 +114,72 @@ def _exponent(n: list[int], values: list[float]) -> float:
     return float(np.polyfit(np.log(n), np.log(values), 1)[0])
 
 
-def _paths(runs: Runs) -> list[dict[str, Any]]:
-    """Every fifth output of the paths at the best estimate."""
-    chosen = {key: result for key, result in runs.items() if key[2] == "best"}
+def _paths(runs: Runs, reference: int) -> list[dict[str, Any]]:
+    """Every fifth output of the paths: at the best estimate all, at the bounds the reference's."""
+    chosen = {key: result for key, result in runs.items() if key[2] == "best" or key[3] == reference}
     grid = next(iter(chosen.values())).time[::5]
     rows: list[dict[str, Any]] = [{"time [s]": float(t)} for t in grid]
-    for (wire, grading, _, n), result in chosen.items():
-        for name in ("tip_x", "tip_y"):
-            for row, value in zip(rows, shared.over(result, name, grid), strict=True):
-                row[f"{wire} {grading} {n} {name} [mm]"] = float(value) * 1e3
+    for (wire, grading, estimate, n), result in chosen.items():
+        for name in ("x", "y"):
+            for row, value in zip(rows, shared.over(result, f"tip_{name}", grid), strict=True):
+                row[_column(wire, grading, estimate, n, name)] = float(value) * 1e3
     return rows
 
 
-def _draw_paths(runs: Runs, segments: tuple[int, ...], reference: int) -> Any:
+def _column(wire: str, grading: str, estimate: str, n: int, name: str) -> str:
+    return f"{wire} {grading} {estimate} {n} tip_{name} [mm]"
+
+
+def _path(paths: list[dict[str, str]], wire: str, estimate: str, n: int) -> Any:
+    """(t, 2) float, mm, of uniform segments."""
+    return np.array([[float(row[_column(wire, "uniform", estimate, n, name)]) for name in "xy"] for row in paths])
+
+
+def _draw_paths(paths: list[dict[str, str]], segments: tuple[int, ...], reference: int, any_run: Result) -> Any:
     from matplotlib import colormaps
 
-    figure = new_figure(11.0, 5.2)
-    for number, (axes, wire) in enumerate(zip(figure.subplots(1, 2), WIRES, strict=True)):
+    figure = new_figure(11.0, 8.0)
+    panels = figure.subplots(2, 2, height_ratios=(1.5, 1.0))
+    colours = colormaps["viridis"](np.linspace(0, 0.9, len(segments)))
+    time = np.array([float(row["time [s]"]) for row in paths])
+    for number, wire in enumerate(("amplatz", "universal")):
+        axes, below = panels[:, number]
         tidy(axes)
-        draw_vessel(axes, runs[wire, "uniform", "best", reference])
-        band = [_path(runs[wire, "uniform", estimate, reference]) for estimate in ("low", "high")]
+        draw_vessel(axes, any_run)
+        band = [_path(paths, wire, estimate, reference) for estimate in ("low", "high")]
         axes.fill(*np.concatenate([band[0], band[1][::-1]]).T, color=BLACK, alpha=0.2, linewidth=0, zorder=3)
-        for n, colour in zip(segments, colormaps["viridis"](np.linspace(0, 0.9, len(segments))), strict=True):
-            axes.plot(*_path(runs[wire, "uniform", "best", n]).T, color=colour, linewidth=1.3, label=f"{n}", zorder=5)
-        path = _path(runs[wire, "uniform", "best", reference])
-        axes.plot(*path.T, color=BLACK, linewidth=1.0, linestyle=":", label=f"{reference}", zorder=6)
+        exact = _path(paths, wire, "best", reference)
+        tidy(below)
+        for n, colour in zip(segments, colours, strict=True):
+            path = _path(paths, wire, "best", n)
+            axes.plot(*path.T, color=colour, linewidth=1.3, label=f"{n}", zorder=5)
+            below.plot(time, np.maximum(np.hypot(*(path - exact).T), 1e-4), color=colour, linewidth=1.2)
+        axes.plot(*exact.T, color=BLACK, linewidth=1.0, linestyle=":", label=f"{reference}", zorder=6)
+        apart = np.max([np.hypot(*(one - exact).T) for one in band], axis=0)
+        below.fill_between(time, 1e-4, np.maximum(apart, 1e-4), color=BLACK, alpha=0.15, linewidth=0)
         axes.set_aspect("equal")
         axes.set_xlim(-4, 78)
         axes.set_ylim(-15, 38)
-        axes.set_title(
-            f"({'ba'[number]}) {TITLES[wire]}: path of the tip\ngrey: n = {reference}, low to high EI",
-            loc="left", fontsize=9.5,
-        )  # fmt: skip
+        axes.set_title(f"({'ab'[number]}) {TITLES[wire]}: path of the tip", loc="left", fontsize=9.5)
         label_places(axes, y=number == 0)
         axes.legend(title="segments", loc="lower right", fontsize=8.5, title_fontsize=8.5, ncols=2, framealpha=0.9)
+        below.set_yscale("log")
+        below.set_ylim(1e-4, 20)
+        below.set_xlabel("time [s]")
+        below.set_title(
+            f"distance from n = {reference} at equal times; grey: of low and high EI from best",
+            loc="left",
+            fontsize=9.5,
+        )
+    panels[1, 0].set_ylabel("distance [mm]")
     return figure
 
 
-def _path(result: Result) -> Any:
-    return np.column_stack([result.values("tip_x"), result.values("tip_y")]) * 1e3
-
-
-def _draw_errors(rows: list[dict[str, Any]], segments: tuple[int, ...]) -> Any:
+def _draw_errors(rows: list[dict[str, str]], segments: tuple[int, ...]) -> Any:
     figure = new_figure(11.0, 4.6)
-    for number, (axes, wire) in enumerate(zip(figure.subplots(1, 2, sharey=True), WIRES, strict=True)):
+    for number, (axes, wire) in enumerate(
+        zip(figure.subplots(1, 2, sharey=True), ("amplatz", "universal"), strict=True)
+    ):
         tidy(axes)
         for grading, style in (("uniform", "-"), ("graded", "--")):
             values = {
@@ -176,6 +204,7 @@ def _draw_errors(rows: list[dict[str, Any]], segments: tuple[int, ...]) -> Any:
         )  # fmt: skip
         axes.set_xscale("log")
         axes.set_yscale("log")
+        axes.set_ylim(3e-5, 10)
         axes.set_xticks(segments, [str(n) for n in segments])
         axes.minorticks_off()
         axes.set_xlabel("segments n")
@@ -186,11 +215,11 @@ def _draw_errors(rows: list[dict[str, Any]], segments: tuple[int, ...]) -> Any:
     return figure
 
 
-def _value(rows: list[dict[str, Any]], wire: str, grading: str, estimate: str, n: int, name: str) -> float:
+def _value(rows: list[dict[str, str]], wire: str, grading: str, estimate: str, n: int, name: str) -> float:
     return next(
         float(r[name])
         for r in rows
-        if (r["wire"], r["segments"], r["estimate"], r["n"]) == (wire, grading, estimate, n)
+        if (r["wire"], r["segments"], r["estimate"], r["n"]) == (wire, grading, estimate, str(n))
     )
 
 

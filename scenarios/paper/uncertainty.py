@@ -61,7 +61,11 @@ def main(out: Path = OUT, quick: bool = False) -> None:
 def _ranges(wire: str) -> dict[str, tuple[float, float]]:
     """Friction; factors of the best estimate of EI of tip and shaft, to the bounds of the catalogue."""
     tip, shaft = zip(*(_stiffness(wire, estimate) for estimate in ("low", "best", "high")), strict=True)
-    return {"friction": FRICTION, "tip": (tip[0] / tip[1], tip[2] / tip[1]), "shaft": (shaft[0] / shaft[1], shaft[2] / shaft[1])}  # fmt: skip
+    return {
+        "friction": FRICTION,
+        "tip": (tip[0] / tip[1], tip[2] / tip[1]),
+        "shaft": (shaft[0] / shaft[1], shaft[2] / shaft[1]),
+    }
 
 
 def _stiffness(wire: str, estimate: str) -> tuple[float, float]:
@@ -174,7 +178,8 @@ def _draw(depth: Any, bands: dict[str, Any], indices: list[dict[str, Any]]) -> A
         axes.plot(depth * 1e3, middle, color=COLOURS[wire], linewidth=1.5, label="median")
         axes.set_xlabel("insertion depth [mm]")
         axes.set_ylabel(axis_label("push force", "mN"))
-        axes.set_title(f"{TITLES[wire]}: friction {FRICTION[0]:g} to {FRICTION[1]:g}, EI low to high", loc="left", fontsize=9.5)  # fmt: skip
+        ranges = f"friction {FRICTION[0]:g} to {FRICTION[1]:g}, EI low to high"
+        axes.set_title(f"{TITLES[wire]}: {ranges}", loc="left", fontsize=9.5)
         axes.legend(frameon=False, fontsize=9, loc="upper left")
         _draw_indices(panels[1, column], [row for row in indices if row["wire"] == wire])
     return figure
