@@ -1,8 +1,8 @@
 """Fig. 4 and Eq. 1: three-point bending of both wires at five stations, apparent against true bending stiffness.
 
 The values that the paper measured are quoted in no text that we have. Ours are the catalogue's ESTIMATE, put through
-the same test: what a step of EI does to the apparent value, and whether the load cell could have seen it. The resolution of
-the cells is not in the paper; ASSUMED is 0.1 % of full scale.
+the same test: what a step of EI does to the apparent value, and whether the load cell could have seen it. The cells'
+resolution is not in the paper; ASSUMED is 0.1 % of full scale.
 """
 
 from __future__ import annotations
