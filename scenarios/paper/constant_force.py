@@ -1,8 +1,8 @@
 """Insertion at constant force: how far a wire gets, and how fast, when it is pushed with a force instead of a speed.
 
 The paper says that "a defined force" moves its wires, and shows none. Here the hub is pushed with a constant force
-against a damper; where the wire needs more than that force, it stops. A run that goes wrong far behind the second corner, where the wire jams, is shown until
-then, with a cross: every step before has passed its checks.
+against a damper; where the wire needs more than that force, it stops. A run that goes wrong far behind the second corner,
+where the wire jams, is shown until then, with a cross: every step before has passed its checks.
 """
 
 from __future__ import annotations
