@@ -1,8 +1,8 @@
 """Insertion at constant force: how far a wire gets, and how fast, when it is pushed with a force instead of a speed.
 
 The paper says that "a defined force" moves its wires, and shows none. Here the hub is pushed with a constant force
-against a damper; where the wire needs more than that force, it stops. A run that goes wrong far behind the second corner,
-where the wire jams, is shown until then, with a cross: every step before has passed its checks.
+against a damper; where the wire needs more than that force, it stops. A run that goes wrong far behind the second
+corner, where the wire jams, is shown until then, with a cross: every step before has passed its checks.
 """
 
 from __future__ import annotations
@@ -81,9 +81,13 @@ def _summary(wire: str, estimate: str, force: int, result: Result) -> dict[str, 
         "duration [s]": result.time[-1],
         "depth_reached [mm]": depth.max() * 1e3,
         "time_to_80_mm [s]": float(result.time[np.argmax(deep)]) if deep.any() else np.nan,
-        "final_speed [mm/s]": float((depth[last][-1] - depth[last][0]) / (result.time[last][-1] - result.time[last][0]))
-        * 1e3,
+        "final_speed [mm/s]": round(_mean_speed(result.time[last], depth[last]) * 1e3, 3) + 0.0,
     }
+
+
+def _mean_speed(time: Any, depth: Any) -> float:
+    """m/s over some outputs."""
+    return float((depth[-1] - depth[0]) / (time[-1] - time[0]))
 
 
 def _draw(runs: Runs, forces: dict[str, tuple[int, ...]]) -> Any:
