@@ -6,13 +6,15 @@ BIN := $(VENV)/bin
 RUNS := results/runs
 WIRES := phantom-universal phantom-amplatz
 BOTH := $(WIRES:%=$(RUNS)/%)
+STUDY := fig4 fig6 fig8 fig9 table2 reach pull_back constant_force uncertainty findings
 
-.PHONY: help run figure test verify mutate lint format kernels wrappers clean
+.PHONY: help run figure paper test verify mutate lint format kernels wrappers clean
 .DELETE_ON_ERROR:
 
 help:
 	@echo "make run      simulate both wires in the phantom, draw them side by side and compare them"
 	@echo "make figure   run both and draw docs/figures/phantom.png, the figure of the README"
+	@echo "make paper    rerun the study of Sharei et al. 2019: every figure and table into results/paper"
 	@echo "make test     run the test suite"
 	@echo "make verify   show and write the evidence that the physics is right"
 	@echo "make mutate   make errors in the physics on purpose, and see that tests notice each"
@@ -36,6 +38,9 @@ figure: $(VENV)/.ready
 	@drawn=`$(BIN)/gw-exudyn plot $(BOTH) --figure insertion --out docs/figures` && \
 	  rm `echo "$$drawn" | grep '\.pdf$$'` && mv `echo "$$drawn" | grep '\.png$$'` docs/figures/phantom.png
 	@echo docs/figures/phantom.png
+
+paper: $(VENV)/.ready-dev
+	@for script in $(STUDY); do $(BIN)/python scenarios/paper/$$script.py || exit 1; done
 
 test: $(VENV)/.ready-dev
 	$(BIN)/python -m pytest
