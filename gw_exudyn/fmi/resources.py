@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import struct
+import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +14,8 @@ from gw_exudyn.errors import StorageError
 from gw_exudyn.fmi.variables import REAL, TEXT, TIMEOUT, Variable
 
 TABLE, SCENARIO = "wrapper.txt", "scenario.json"
+HASHES = "resources/hashes.json"
+"""Where an FMU tells the SHA-256 of its larger files, by name."""
 _HEAD = "gw-fmu-wrapper 1"
 # One thread a worker: instances run side by side. Set before numpy is loaded.
 _ENVIRONMENT = ("OMP_NUM_THREADS=1", "OPENBLAS_NUM_THREADS=1", "MKL_NUM_THREADS=1")
@@ -86,4 +89,14 @@ def read_scenario(folder: Path) -> dict[str, Any]:
         content: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise StorageError(f"{file}: can't be read ({error}); export the FMU again") from error
+    return content
+
+
+def scenario_in(file: Path) -> dict[str, Any]:
+    """The scenario of an FMU that is not unpacked, as plain data. Raises StorageError."""
+    try:
+        with zipfile.ZipFile(file) as archive:
+            content: dict[str, Any] = json.loads(archive.read(f"resources/{SCENARIO}"))
+    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+        raise StorageError(f"{file}: is no FMU of gw-exudyn ({error})") from error
     return content
