@@ -76,6 +76,8 @@ def _put(archive: zipfile.ZipFile, root: Path, entry: Path, hashes: dict[str, st
     part = Path(tempfile.mkdtemp(prefix=f".{entry.name}.", dir=root))
     try:
         archive.extractall(part)
+        if not _intact(part, hashes):
+            raise OSError("its files are not those that it says it holds; export it again")
         while True:
             try:
                 part.rename(entry)
