@@ -31,6 +31,7 @@ def command() -> None:
 @click.option("--stations", type=click.IntRange(2, 5000), default=51, show_default=True,
               help="Points along the wire at which FMI 3 shows its shape.")  # fmt: skip
 @click.option("--bundled", is_flag=True, help="Put the worker with its own Python inside, for this platform alone.")
+@click.option("--ssp", is_flag=True, help="Write a parameter set (SSV) and an example system (SSP) beside the FMU.")
 @click.option("--python", metavar="PATH", help="Interpreter to record in the FMU. Without: this one.")
 def export(
     scenario: str,
@@ -39,6 +40,7 @@ def export(
     fmi: str,
     stations: int,
     bundled: bool,
+    ssp: bool,
     python: str | None,
 ) -> None:
     """Load, check and write."""
@@ -48,7 +50,13 @@ def export(
     loaded = load_scenario(scenario, overrides)
     file = out or f"{loaded.name}.fmu"
     launch = exporting.launch_of(python)
-    put(str(exporting.export(loaded, file, int(fmi), stations=stations, launch=launch, bundled=bundled)))
+    written = exporting.export(loaded, file, int(fmi), stations=stations, launch=launch, bundled=bundled)
+    put(str(written))
+    if ssp:
+        from gw_exudyn.fmi.ssp import write_ssp
+
+        for further in write_ssp(loaded, written, exporting.variables_of(loaded, int(fmi), stations)):
+            put(str(further))
     if bundled:
         from gw_exudyn.fmi.bundle import this_platform
 

@@ -115,6 +115,9 @@ def glibc_need(files: Mapping[str, bytes]) -> str:
 def licences(files: Mapping[str, bytes]) -> str:
     """The licences of what is frozen: of the Python packages, of Python, and of the system's libraries."""
     parts = [f"What runs this FMU, in resources/{FOLDER}, is made of the following, each under its own licence.\n"]
+    own = Path(__file__).resolve().parents[2] / "LICENSE"  # a source tree; installed, it is among the package's files
+    if own.is_file():
+        parts.append(_heading("gw-exudyn") + own.read_text(encoding="utf-8"))
     parts.append(_heading(f"Python {platform.python_version()}") + _python_licence())
     for name in _SHOWN:
         try:
