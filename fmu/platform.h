@@ -11,7 +11,8 @@ typedef enum { CHANNEL_OK, CHANNEL_CLOSED, CHANNEL_SILENT } Channel;
 
 FILE *platform_open(const char *path);
 
-/* Starts `PYTHON arguments... resources`; NULL, with a sentence, if it can't. The worker ends when this process ends,
+/* Starts `PYTHON arguments... resources`, or the table's own program with `arguments... resources`, which the host may
+ * have unpacked without its permission to run; NULL, with a sentence, if it can't. The worker ends when this process ends,
  * however busy either is, and gets none of the host's variables PYTHON*, LD_* and DYLD_*. */
 Worker *worker_start(const Table *table, const char *resources, char *message, size_t size);
 

@@ -15,10 +15,15 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/types.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
+
+#ifdef __GLIBC__
+#include <gnu/libc-version.h>
+#endif
 
 #ifndef MSG_NOSIGNAL
 #define MSG_NOSIGNAL 0 /* macOS: SO_NOSIGPIPE does it */
@@ -80,9 +85,10 @@ static bool same_name(const char *variable, const char *other) {
     return strncmp(variable, other, length) == 0 && variable[length] == '=';
 }
 
-/* The host's environment without what would upset the worker, and with the table's. Free the array and its first. */
-static char **worker_environment(const Table *table, bool recorded) {
-    size_t count = 0, kept = 0, room = strlen(table->path) + sizeof "PYTHONPATH=";
+/* The host's environment without what would upset the worker, and with the table's; an own program finds its libraries
+ * in the table's path. Free the array and its first. */
+static char **worker_environment(const Table *table, bool recorded, const char *resources) {
+    size_t count = 0, kept = 0, room = strlen(resources) + strlen(table->path) + sizeof "LD_LIBRARY_PATH=/";
     char **list, *path = malloc(room);
     while (environ != NULL && environ[count] != NULL) count++;
     list = calloc(count + table->n_environment + 2, sizeof *list);
@@ -91,7 +97,8 @@ static char **worker_environment(const Table *table, bool recorded) {
         free(path);
         return NULL;
     }
-    snprintf(path, room, "PYTHONPATH=%s", recorded ? table->path : "");
+    if (*table->program != '\0') snprintf(path, room, "LD_LIBRARY_PATH=%s/%s", resources, table->path);
+    else snprintf(path, room, "PYTHONPATH=%s", recorded ? table->path : "");
     list[kept++] = path;
     for (size_t i = 0; i < count; i++) {
         bool replaced = hidden(environ[i]);
@@ -144,19 +151,60 @@ static const char *choose(const Table *table, bool *recorded) {
     return "python3";
 }
 
-static Worker *failed(Worker *worker, const Table *table, const char *program, int error, char *message, size_t size) {
-    snprintf(message, size, "the Python interpreter '%s' can't be started (%s); %s", program, strerror(error),
+/* What a version says of its first two numbers, as one to compare. */
+static long version_number(const char *text) {
+    char *rest;
+    long major = strtol(text, &rest, 10);
+    return major * 1000 + (*rest == '.' ? strtol(rest + 1, NULL, 10) : 0);
+}
+
+/* Whether the system's C library is as new as the program needs; says so if not. */
+static bool new_enough(const Table *table, char *message, size_t size) {
+#ifdef __GLIBC__
+    const char *here = gnu_get_libc_version();
+    if (*table->glibc == '\0' || version_number(here) >= version_number(table->glibc)) return true;
+    snprintf(message, size, "this FMU's worker needs glibc %s or newer, and this system has %s; %s", table->glibc, here,
              table->remedy);
+    return false;
+#else
+    (void)message;
+    (void)size;
+    return *table->glibc == '\0' || version_number(table->glibc) >= 0;
+#endif
+}
+
+/* The path of the table's own program, made to be run; to be freed. */
+static char *own_program(const Table *table, const char *resources) {
+    size_t room = strlen(resources) + strlen(table->program) + 2;
+    char *path = malloc(room);
+    if (path == NULL) return NULL;
+    snprintf(path, room, "%s/%s", resources, table->program);
+    if (access(path, X_OK) != 0) {
+        struct stat found;
+        if (stat(path, &found) == 0) chmod(path, found.st_mode | S_IXUSR);
+    }
+    return path;
+}
+
+static Worker *failed(Worker *worker, const Table *table, const char *program, int error, char *message, size_t size) {
+    if (*table->program == '\0')
+        snprintf(message, size, "the Python interpreter '%s' can't be started (%s); %s", program, strerror(error),
+                 table->remedy);
+    else if (error == EACCES)
+        snprintf(message, size, "the worker '%s' may not be run there (%s): the folder forbids it (mount option noexec) "
+                 "or belongs to another user; have the host unpack the FMU elsewhere, as by the environment variable "
+                 "TMPDIR", program, strerror(error));
+    else
+        snprintf(message, size, "the worker '%s' can't be started (%s); %s", program, strerror(error), table->remedy);
     free(worker);
     return NULL;
 }
 
-Worker *worker_start(const Table *table, const char *resources, char *message, size_t size) {
+static Worker *start_program(const Table *table, const char *program, bool recorded, const char *resources,
+                             char *message, size_t size) {
     int channel[2] = {-1, -1}, lifeline[2] = {-1, -1}, words[2] = {-1, -1}, theirs[3], error = 0;
-    bool recorded;
-    const char *program = choose(table, &recorded);
     const char *arguments[20] = {program};
-    char **environment = worker_environment(table, recorded);
+    char **environment = worker_environment(table, recorded, resources);
     Worker *worker = calloc(1, sizeof *worker);
     for (size_t i = 0; i < table->n_arguments; i++) arguments[i + 1] = table->arguments[i];
     arguments[table->n_arguments + 1] = resources;
@@ -181,6 +229,25 @@ Worker *worker_start(const Table *table, const char *resources, char *message, s
     worker->channel = channel[0];
     worker->lifeline = lifeline[0];
     worker->words = words[0];
+    return worker;
+}
+
+Worker *worker_start(const Table *table, const char *resources, char *message, size_t size) {
+    bool recorded = false;
+    Worker *worker;
+    char *own;
+    if (*table->program == '\0') {
+        const char *program = choose(table, &recorded);
+        return start_program(table, program, recorded, resources, message, size);
+    }
+    if (!new_enough(table, message, size)) return NULL;
+    own = own_program(table, resources);
+    if (own == NULL) {
+        snprintf(message, size, "there is not enough memory");
+        return NULL;
+    }
+    worker = start_program(table, own, false, resources, message, size);
+    free(own);
     return worker;
 }
 

@@ -120,6 +120,8 @@ static bool read_line(Table *table, char *line, size_t capacity) {
     else if (strcmp(keyword, "version") == 0) table->version = rest;
     else if (strcmp(keyword, "python") == 0) table->python = rest;
     else if (strcmp(keyword, "path") == 0) table->path = rest;
+    else if (strcmp(keyword, "program") == 0) table->program = rest;
+    else if (strcmp(keyword, "glibc") == 0) table->glibc = rest;
     else if (strcmp(keyword, "remedy") == 0) table->remedy = rest;
     else if (strcmp(keyword, "argument") == 0) return keep(table->arguments, &table->n_arguments, rest);
     else if (strcmp(keyword, "environment") == 0) return keep(table->environment, &table->n_environment, rest);
@@ -152,7 +154,7 @@ static bool read_lines(Table *table, const char *path, char *message, size_t siz
         if (line == 1 ? strcmp(begin, TABLE_HEAD) != 0 : !read_line(table, begin, capacity))
             return complain(message, size, path, line, "this line is not understood");
     }
-    if (*table->token == '\0' || *table->version == '\0' || table->n_arguments == 0)
+    if (*table->token == '\0' || *table->version == '\0' || (table->n_arguments == 0 && *table->program == '\0'))
         return complain(message, size, path, line, "the table is cut short");
     if (!lay_out(table)) return complain(message, size, path, line, "there are too many values");
     if (table->timeout >= table->n_variables || table->variables[table->timeout].kind != KIND_REAL)
@@ -166,6 +168,7 @@ bool table_read(Table *table, const char *resources, char *message, size_t size)
     int written = snprintf(path, sizeof path, "%s/%s", resources, TABLE_FILE);
     memset(table, 0, sizeof *table);
     table->token = table->version = table->python = table->path = table->remedy = "";
+    table->program = table->glibc = "";
     table->timeout = MOST_VALUES;
     if (written < 0 || (size_t)written >= sizeof path) {
         snprintf(message, size, "the path of the FMU's resources is too long; unpack it into a shorter folder");

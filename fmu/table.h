@@ -26,7 +26,7 @@ typedef struct {
 /* Of the numbers, and of the texts, those that can be set stand first, then the outputs; time is the last number. */
 typedef struct {
     char *content;
-    const char *token, *version, *python, *path, *remedy;
+    const char *token, *version, *python, *path, *program, *glibc, *remedy;
     const char *arguments[16], *environment[16];
     size_t n_arguments, n_environment;
     Variable *variables;
@@ -38,7 +38,6 @@ typedef struct {
 /* Reads the table of a resources folder; false, with a sentence, if it is missing or not understood. */
 bool table_read(Table *table, const char *resources, char *message, size_t size);
 void table_free(Table *table);
-
 
 size_t table_numbers(const Table *table);
 size_t table_texts(const Table *table);

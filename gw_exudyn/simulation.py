@@ -96,6 +96,11 @@ class Simulation:
         return self._stepper.counts()
 
     @property
+    def peaks(self) -> Mapping[str, tuple[float, float]]:
+        """Largest value over all solver steps so far and its time, s, as `Result.peaks` has them."""
+        return MappingProxyType(self._stepper.peaks)
+
+    @property
     def outputs(self) -> Mapping[str, Any]:
         """Every quantity of the table of quantities at the time reached: floats, and arrays over nodes, joints and
         contacts."""

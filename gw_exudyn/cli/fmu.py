@@ -30,9 +30,18 @@ def command() -> None:
 @click.option("--fmi", type=click.Choice(["2", "3"]), default="2", show_default=True, help="Version of the standard.")
 @click.option("--stations", type=click.IntRange(2, 5000), default=51, show_default=True,
               help="Points along the wire at which FMI 3 shows its shape.")  # fmt: skip
+@click.option("--bundled", is_flag=True, help="Put the worker with its own Python inside, for this platform alone.")
+@click.option("--ssp", is_flag=True, help="Write a parameter set (SSV) and an example system (SSP) beside the FMU.")
 @click.option("--python", metavar="PATH", help="Interpreter to record in the FMU. Without: this one.")
 def export(
-    scenario: str, overrides: tuple[str, ...], out: str | None, fmi: str, stations: int, python: str | None
+    scenario: str,
+    overrides: tuple[str, ...],
+    out: str | None,
+    fmi: str,
+    stations: int,
+    bundled: bool,
+    ssp: bool,
+    python: str | None,
 ) -> None:
     """Load, check and write."""
     from gw_exudyn.fmi import export as exporting
@@ -40,7 +49,18 @@ def export(
 
     loaded = load_scenario(scenario, overrides)
     file = out or f"{loaded.name}.fmu"
-    put(str(exporting.export(loaded, file, int(fmi), stations=stations, launch=exporting.launch_of(python))))
+    launch = exporting.launch_of(python)
+    written = exporting.export(loaded, file, int(fmi), stations=stations, launch=launch, bundled=bundled)
+    put(str(written))
+    if ssp:
+        from gw_exudyn.fmi.ssp import write_ssp
+
+        for further in write_ssp(loaded, written, exporting.variables_of(loaded, int(fmi), stations)):
+            put(str(further))
+    if bundled:
+        from gw_exudyn.fmi.bundle import this_platform
+
+        tell(f"runs on {this_platform()} alone; the libraries for other platforms are left out")
 
 
 @command.command(short_help="Run an FMU through fmpy.")

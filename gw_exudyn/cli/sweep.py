@@ -45,6 +45,8 @@ _FAILURES_TOLD = 10
 @click.option("--retry-failed", is_flag=True, help="Run points again that failed.")
 @click.option("--fresh", is_flag=True, help="Forget what is done and run all points.")
 @click.option("--dry-run", is_flag=True, help="Show the points and what they will cost; run none.")
+@click.option("--engine", type=click.Choice(["native", "fmu"]), default="native", show_default=True,
+              help="What runs the points: the simulation itself, or its FMU.")  # fmt: skip
 @click.option("--no-figures", is_flag=True, help="Leave out the figures, and the best and the worst run.")
 @options.as_json
 @click.option("--quiet", "-q", is_flag=True, help="No progress and no summary; only what goes wrong is told.")
@@ -59,16 +61,24 @@ def command(
     retry_failed: bool,
     fresh: bool,
     dry_run: bool,
+    engine: str,
     no_figures: bool,
     as_json: bool,
     quiet: bool,
 ) -> int:
     """Check all points, run what is missing, and say what came out."""
+    from contextlib import nullcontext
+    from dataclasses import replace
+
     from gw_exudyn.cli.sweep_progress import checking, cores, running
     from gw_exudyn.engine.library import exudyn
+    from gw_exudyn.sweep.fmu_runner import FMU, check_options, fmu_runner
     from gw_exudyn.sweep.run import Options, make_plan, run_sweep
+    from gw_exudyn.sweep.runner import SIMULATION
     from gw_exudyn.sweep.study import load_study
 
+    if engine == "fmu":
+        check_options(keep_runs, scheduler)
     loaded = load_study(study, overrides)
     folder = Path(out) if out else SWEEPS / loaded.name
     chosen = Options(
@@ -79,14 +89,19 @@ def command(
         retry_failed=retry_failed,
         fresh=fresh,
         figures=not no_figures,
-        command=_command_line(study, overrides, out, keep_runs),
+        command=_command_line(study, overrides, out, keep_runs, engine),
+        runner=FMU if engine == "fmu" else SIMULATION,
     )
     exudyn()
     with checking(len(loaded), quiet) as look:
         plan = make_plan(loaded, folder, chosen, look)
     if dry_run:
         return _show_plan(loaded, plan, folder, chosen, as_json)
-    with running(loaded.name, chosen, quiet) as (report, stop):
+    with (
+        fmu_runner(loaded) if engine == "fmu" else nullcontext(SIMULATION) as runner,
+        running(loaded.name, chosen, quiet) as (report, stop),
+    ):
+        chosen = replace(chosen, runner=runner)
         summary = run_sweep(loaded, folder, chosen, plan=plan, report=report, should_stop=stop.should_stop)
     _tell(summary, quiet)
     if as_json:
@@ -98,9 +113,10 @@ def command(
     return SweepError.exit_code if summary.failed else 0
 
 
-def _command_line(study: str, overrides: tuple[str, ...], out: str | None, keep_runs: bool) -> str:
+def _command_line(study: str, overrides: tuple[str, ...], out: str | None, keep_runs: bool, engine: str) -> str:
     words = ["gw-exudyn", "sweep", study, *(word for text in overrides for word in ("--set", text))]
     words += ["--keep-runs"] if keep_runs else []
+    words += [] if engine == "native" else ["--engine", engine]
     return shlex.join([*words, "--out", out] if out else words)
 
 

@@ -36,10 +36,10 @@ class Model:
     stop: float
     step: float
     sources: tuple[str, ...]
+    bundled: bool = False
 
 
 _CAPABILITIES = {
-    "needsExecutionTool": True,
     "canHandleVariableCommunicationStepSize": True,
 }
 _STATES = {2: ("canGetAndSetFMUstate", "canSerializeFMUstate"), 3: ("canGetAndSetFMUState", "canSerializeFMUState")}
@@ -72,7 +72,8 @@ def _shown(variable: Variable, fmi: int) -> bool:
 
 
 def _co_simulation(root: _Element, model: Model, fmi: int) -> None:
-    flags: dict[str, Any] = {"modelIdentifier": model.identifier, **_CAPABILITIES}
+    flags: dict[str, Any] = {"modelIdentifier": model.identifier, "needsExecutionTool": not model.bundled}
+    flags |= _CAPABILITIES
     flags |= dict.fromkeys(_STATES[fmi], True)
     if fmi == 3:
         flags["mightReturnEarlyFromDoStep"] = True

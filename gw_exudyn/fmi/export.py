@@ -17,9 +17,10 @@ from typing import TYPE_CHECKING
 
 import gw_exudyn
 from gw_exudyn.errors import StorageError, UsageError
-from gw_exudyn.fmi import description
+from gw_exudyn.fmi import bundle, description
+from gw_exudyn.fmi.bundle import FOLDER
 from gw_exudyn.fmi.page import documentation
-from gw_exudyn.fmi.resources import SCENARIO, TABLE, Launch, table_text
+from gw_exudyn.fmi.resources import HASHES, SCENARIO, TABLE, Launch, table_text
 from gw_exudyn.fmi.variables import Variable, table
 from gw_exudyn.fmi.wrapper import HEADERS, PLATFORMS, SOURCES, library, source_folder
 from gw_exudyn.quantities import SCALARS
@@ -63,8 +64,11 @@ def export(
     *,
     stations: int = STATIONS,
     launch: Launch | None = None,
+    bundled: bool = False,
 ) -> Path:
     """Write the FMU of a scenario and return its file. The same scenario on the same machine gives the same bytes.
+
+    bundled : with a worker inside that needs no Python, for this machine's platform alone.
 
     Raises ScenarioError for a scenario that cannot start, UsageError for an FMI version that there is not, StorageError
     where the file can't be written.
@@ -73,7 +77,7 @@ def export(
         raise UsageError(f"there is no FMI {fmi} here; take 2 or 3")
     if stations < 2:
         raise UsageError(f"{stations} stations describe no wire; take 2 or more")
-    files = _files(scenario, fmi, stations, launch or launch_of())
+    files = _files(scenario, fmi, stations, launch or launch_of(), bundled)
     target = Path(file)
     part = target.with_name(f".{target.name}.part")
     try:
@@ -82,7 +86,7 @@ def export(
             for name, content in sorted(files.items(), key=lambda item: (item[0] != "modelDescription.xml", item[0])):
                 entry = zipfile.ZipInfo(name, _DATE)
                 entry.compress_type = zipfile.ZIP_DEFLATED
-                entry.external_attr = (0o755 if name.startswith("binaries/") else 0o644) << 16
+                entry.external_attr = (0o755 if name.startswith(("binaries/", f"resources/{FOLDER}/")) else 0o644) << 16
                 archive.writestr(entry, content)
         os.replace(part, target)
     except OSError as error:
@@ -92,15 +96,31 @@ def export(
     return target
 
 
-def _files(scenario: Scenario, fmi: int, stations: int, launch: Launch) -> dict[str, bytes]:
+def _files(scenario: Scenario, fmi: int, stations: int, launch: Launch, bundled: bool) -> dict[str, bytes]:
     """Every file of the FMU by its name."""
     variables = variables_of(scenario, fmi, stations)
+    worker = bundle.frozen() if bundled else {}
+    platforms = (bundle.this_platform(),) if bundled else PLATFORMS
+    if bundled:
+        launch = replace(
+            launch,
+            python="",
+            path=f"{FOLDER}/_internal",
+            arguments=(),
+            program=f"{FOLDER}/{FOLDER}",
+            glibc=bundle.glibc_need(worker),
+        )
     headers = sorted(header for header in _fmi_headers() if not header.name.startswith("fmi1"))
     identifier = identifier_of(scenario.name)
     files = {f"resources/{SCENARIO}": (json.dumps(scenario.to_dict(), indent=1) + "\n").encode()}
     files |= {f"sources/{name}": (source_folder() / name).read_bytes() for name in (*SOURCES, *HEADERS)}
     files |= {f"sources/{header.name}": header.read_bytes() for header in headers}
-    files |= {f"binaries/{name}": content for name, content in _binaries(fmi, identifier).items()}
+    files |= {f"binaries/{name}": content for name, content in _binaries(fmi, identifier, platforms).items()}
+    files |= {f"resources/{name}": content for name, content in worker.items()}
+    if bundled:
+        files[bundle.LICENCES] = bundle.licences(worker).encode()
+        hashes = {f"resources/{name}": hashlib.sha256(content).hexdigest() for name, content in worker.items()}
+        files[HASHES] = (json.dumps(hashes, indent=1, sort_keys=True) + "\n").encode()
     model = description.Model(
         name=scenario.name,
         identifier=identifier,
@@ -110,6 +130,7 @@ def _files(scenario: Scenario, fmi: int, stations: int, launch: Launch) -> dict[
         stop=scenario.drive.duration,
         step=scenario.solver.step,
         sources=SOURCES,
+        bundled=bundled,
     )
     if fmi == 3:
         files["sources/buildDescription.xml"] = description.build_description(model)
@@ -126,12 +147,14 @@ def _fmi_headers() -> list[Path]:
     return list(fmi_headers().glob("fmi*.h"))
 
 
-def _binaries(fmi: int, identifier: str) -> dict[str, bytes]:
+def _binaries(fmi: int, identifier: str, platforms: Sequence[str]) -> dict[str, bytes]:
     """The wrapper's libraries, by their place. FMI 2 has one folder for macOS: both processors go into one file."""
-    contents = {platform: library(platform).read_bytes() for platform in PLATFORMS}
+    contents = {platform: library(platform).read_bytes() for platform in platforms}
     if fmi == 3:
         return {f"{p}/{identifier}{library(p).suffix}": content for p, content in contents.items()}
-    placed = {f"{f}/{identifier}{library(p).suffix}": contents[p] for p, f in _FOLDERS2.items()}
+    placed = {f"{f}/{identifier}{library(p).suffix}": contents[p] for p, f in _FOLDERS2.items() if p in contents}
+    if "x86_64-darwin" not in contents:
+        return placed
     both = universal([contents["x86_64-darwin"], contents["aarch64-darwin"]])
     return {**placed, f"darwin64/{identifier}.dylib": both}
 

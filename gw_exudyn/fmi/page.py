@@ -61,9 +61,8 @@ def documentation(name: str, variables: Sequence[Variable], fmi: int, launch: La
     return f"""<!DOCTYPE html>
 <html><head><meta charset="utf-8"><title>{escape(name)}</title></head><body>
 <h1>{escape(name)}</h1>
-<p>A guidewire pushed into a vessel, by gw-exudyn {launch.version}. The worker runs in a Python that has it: that of the
-environment variable GW_EXUDYN_PYTHON, else the one that exported this FMU, else the first python3 on the PATH. If it
-does not start, {escape(launch.remedy)}.</p>
+<p>A guidewire pushed into a vessel, by gw-exudyn {launch.version}, under the MIT licence. {_where(launch)} If the
+worker does not start, {escape(launch.remedy)}.</p>
 <p>All values are in SI. Forces are those of the wire on the vessel; the push force is positive when pushing.</p>
 <table>
 <tr>{head}</tr>
@@ -71,6 +70,20 @@ does not start, {escape(launch.remedy)}.</p>
 </table>
 </body></html>
 """
+
+
+def _where(launch: Launch) -> str:
+    """In which Python the worker runs, and on which machines."""
+    if launch.program:
+        return (
+            f"The worker and its Python are in this FMU, for Linux with glibc {launch.glibc} or newer on the processor "
+            "of the library in binaries/; the libraries for other platforms are left out. licenses/bundled.txt has the "
+            "licences of what is inside."
+        )
+    return (
+        "The worker runs in a Python that has it: that of the environment variable GW_EXUDYN_PYTHON, else the one that "
+        "exported this FMU, else the first python3 on the PATH."
+    )
 
 
 def readme_table() -> str:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -16,12 +18,14 @@ from gw_exudyn.fmi import variables as names
 from gw_exudyn.fmi.channel import DONE, FAILED, STOPPED
 from gw_exudyn.fmi.resources import read_scenario, read_table
 from gw_exudyn.fmi.variables import TEXT, Variable, command_of, constant_drive, output_name, status_code
-from gw_exudyn.quantities import QUANTITIES, SCALARS
+from gw_exudyn.quantities import CONTACT_OWNERS, QUANTITIES, SCALARS
 from gw_exudyn.scenario import Scenario, load_scenario, scenario_from_dict
 from gw_exudyn.simulation import Simulation
 
 _STEPS_AT_ONCE = 20
 """Solver steps between two signs of life."""
+
+_VESSEL = next(value for value, word in CONTACT_OWNERS if word == "vessel")
 
 _OF_THE_WIRE = ("diameter", "length", "density", "bending_stiffness")
 """What a wire of the catalogue fills in, where a file does not give it."""
@@ -48,8 +52,7 @@ class ScenarioPlant:
         self._not_structure = {self._command_at, place[names.TIMEOUT], place[names.COMMAND_ACTIVE]}
         self._active_at = place[names.COMMAND_ACTIVE]
         outputs = [v for v in table if v.role == names.OUTPUT and v.kind != TEXT]
-        quantity_of = {output_name(q): q for q in SCALARS}
-        self._readers = [_reader(v, quantity_of) for v in outputs]
+        self._readers = list(_readers(outputs))
         self._built_of: tuple[Any, ...] | None = None
         self._simulation: Simulation | None = None
         self._commanded = False
@@ -102,9 +105,10 @@ class ScenarioPlant:
         simulation = self.simulation
         outputs, report = self._sampled or simulation.outputs, simulation.status
         values = array("d")
+        code = status_code(report.status)
         for reader in self._readers:
-            reader(values, outputs, simulation)
-        wrong = simulation.ended or status_code(report.status)
+            values.extend(reader(outputs, simulation, code))
+        wrong = simulation.ended or code
         return values.tobytes(), [report.sentence() if wrong else "Nothing is wrong."]
 
     def get_state(self) -> bytes:
@@ -189,23 +193,57 @@ def _scaled(scenario: Scenario, factors: Mapping[str, float]) -> Scenario:
     return scenario_from_dict(scenario.to_dict(), {"wire.bending_stiffness": pieces})
 
 
-Reader = Callable[["array[float]", Mapping[str, Any], Simulation], None]
-"""Appends the values of one variable."""
+Reader = Callable[[Mapping[str, Any], Simulation, int], Iterable[float]]
+"""Values of one or several variables in a row, of the outputs, the simulation and the status code."""
 
 
-def _reader(variable: Variable, quantity_of: Mapping[str, str]) -> Reader:
+def _readers(outputs: Sequence[Variable]) -> Iterator[Reader]:
+    """What gives the values of the outputs, in their order. Neighbours that are read alike are read at once."""
+    quantity_of = {output_name(q): q for q in SCALARS}
+    for scalar, group in groupby(outputs, lambda variable: variable.name in quantity_of):
+        if scalar:
+            yield _scalars([quantity_of[variable.name] for variable in group])
+        else:
+            for placed, rest in groupby(group, lambda variable: variable.name in names.PLACE_OF_LARGEST):
+                if placed:
+                    yield _place_of_largest([names.PLACE_OF_LARGEST[variable.name] for variable in rest])
+                else:
+                    yield from map(_reader, rest)
+
+
+def _scalars(quantities: Sequence[str]) -> Reader:
+    if len(quantities) == 1:
+        (quantity,) = quantities
+        return lambda outputs, _, __: (outputs[quantity],)
+    picked = itemgetter(*quantities)
+    return lambda outputs, _, __: picked(outputs)
+
+
+def _reader(variable: Variable) -> Reader:
     name = variable.name
-    if name in quantity_of:
-        quantity = quantity_of[name]
-        return lambda values, outputs, _: values.append(float(outputs[quantity]))
     if name == names.STATUS_CODE:
-        return lambda values, _, simulation: values.append(status_code(simulation.status.status))
+        return lambda _, __, code: (code,)
     if name in names.STATION_NAMES:
-        return lambda values, outputs, simulation: values.extend(
-            _at_stations(name, variable.size, outputs, simulation).tolist()
-        )
+        return lambda outputs, simulation, _: _at_stations(name, variable.size, outputs, simulation).tolist()
+    for peak in names.PEAKS:
+        if name in names.peak_names(peak):
+            which = names.peak_names(peak).index(name)
+            return lambda _, simulation, __: (simulation.peaks.get(peak, (0.0, 0.0))[which],)
     known = ", ".join(q for q in QUANTITIES)
     raise UsageError(f"there is no quantity for the output {name}; export the FMU again (known: {known})")
+
+
+def _place_of_largest(fields: Sequence[str]) -> Reader:
+    """Fields of the contact that presses hardest on the vessel; 0 without one."""
+
+    def read(outputs: Mapping[str, Any], _: Simulation, __: int) -> Iterable[float]:
+        if not outputs["contacts"]:
+            return [0.0] * len(fields)
+        force = np.hypot(outputs["contact_normal_force"], outputs["contact_tangential_force"])
+        place = int(np.where(outputs["contact_owner"] == _VESSEL, force, -1.0).argmax())
+        return [outputs[field][place] for field in fields]
+
+    return read
 
 
 def _at_stations(name: str, count: int, outputs: Mapping[str, Any], simulation: Simulation) -> NDArray[np.float64]:

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gw_exudyn.errors import SolverError, StorageError, UsageError
+from gw_exudyn.fmi.cache import unpacked
 from gw_exudyn.fmi.variables import STATUS_CODE, STATUS_MESSAGE
 from gw_exudyn.result import Status
 from gw_exudyn.scenario.units import parse_unit
@@ -54,7 +55,7 @@ class FmuRun:
 
 
 class FmuSession:
-    """An FMU with one instance that serves run after run.
+    """An FMU with one instance that serves run after run. It is unpacked in the user's cache folder, once.
 
     Raises StorageError for a file that is no FMU, UsageError without fmpy, SolverError where the FMU does not start.
     """
@@ -67,11 +68,11 @@ class FmuSession:
             raise UsageError("the package fmpy is missing; install it with: pip install fmpy") from error
         self._messages: list[str] = []
         self._used = False
-        self._folder = Path(tempfile.mkdtemp(prefix="gw-fmu-"))
+        self._own_folder: Path | None = None
         self._instance: Any = None
         try:
             try:
-                extract(os.fspath(file), unzipdir=str(self._folder))
+                self._folder = unpacked(file) or self._apart(file, extract)
                 self.description: Any = read_model_description(str(self._folder), validate=False)
             except Exception as error:  # whatever a file that is no FMU leads to in fmpy
                 raise StorageError(f"{os.fspath(file)}: can't be read as an FMU: {error}") from error
@@ -97,7 +98,25 @@ class FmuSession:
         if self._instance is not None:
             self._instance.freeInstance()
             self._instance = None
-        shutil.rmtree(self._folder, ignore_errors=True)
+        if self._own_folder is not None:
+            shutil.rmtree(self._own_folder, ignore_errors=True)
+
+    def _apart(self, file: str | os.PathLike[str], extract: Callable[..., Any]) -> Path:
+        """Unpacked in a folder of its own, where there is no cache."""
+        self._own_folder = Path(tempfile.mkdtemp(prefix="gw-fmu-"))
+        extract(os.fspath(file), unzipdir=str(self._own_folder))
+        return self._own_folder
+
+    @property
+    def version(self) -> str:
+        """Version of gw-exudyn that exported the FMU; empty for an FMU of others."""
+        program, _, version = str(self.description.generationTool or "").partition(" ")
+        return version if program == "gw-exudyn" else ""
+
+    @property
+    def resources(self) -> Path:
+        """The folder of the FMU's resources."""
+        return self._folder / "resources"
 
     def run(
         self,
@@ -209,10 +228,11 @@ def _unit(variable: Any) -> str:
 def run_point(session: FmuSession, point: Mapping[str, Any], *, step: float | None = None) -> dict[str, Any]:
     """One point of a study on a reused instance: the outputs at the end, the largest of the forces, and the status."""
     run = session.run(point, step=step)
-    peaks = {f"{name}.peak": float(run.outputs[name].max()) for name in run.names if "force" in name}
+    forces = [name for name in run.names if "force" in name and ".peak" not in name]
+    peaks = {f"{name}.peak": float(run.outputs[name].max()) for name in forces}
     return {
-        **{name: float(value) for name, value in run.final.items() if np.ndim(value) == 0},
         **peaks,
+        **{name: float(value) for name, value in run.final.items() if np.ndim(value) == 0},
         "code": run.code,
     }
 

@@ -98,6 +98,24 @@ _OUTPUTS: Mapping[str, str] = MappingProxyType(
 )
 """Name in the FMU of every scalar quantity; a quantity that is not here is named after the rule of `output_name`."""
 
+_PEAKS: Mapping[str, str] = MappingProxyType(
+    {
+        "push_force": "push.force",
+        "pull_force": "pull.force",
+        "wall_force_max": "wall.force.max",
+        "penetration_max": "wall.penetration",
+    }
+)
+"""Name in the FMU of what a simulation keeps the largest value of, over all solver steps."""
+
+PEAKS: tuple[str, ...] = tuple(_PEAKS)
+
+_PLACE = {"x": "contact_x", "y": "contact_y", "arc_length": "contact_arc_length"}
+PLACE_OF_LARGEST: Mapping[str, str] = MappingProxyType(
+    {f"wall.force.max.{name}": quantity for name, quantity in _PLACE.items()}
+)
+"""Outputs that say where the vessel is pressed hardest, and the contact fields that they show."""
+
 _STATIONS = (
     ("wire.station.arc_length", "node_arc_length", "place of the stations along the wire, from the tip"),
     ("wire.station.x", "node_x", "x of the wire's axis at the stations"),
@@ -116,6 +134,11 @@ def output_name(quantity: str) -> str:
     return _OUTPUTS.get(quantity, f"result.{quantity}")
 
 
+def peak_names(peak: str) -> tuple[str, str]:
+    """Names, among the FMU's variables, of a peak and of its time."""
+    return f"{_PEAKS[peak]}.peak", f"{_PEAKS[peak]}.peak_time"
+
+
 def status_code(status: Status) -> int:
     """0 while the run goes on and nothing is wrong, else the number of the status."""
     return 0 if status in (Status.COMPLETED, Status.STOPPED) else list(Status).index(status)
@@ -132,6 +155,8 @@ def table(model: Model, scalars: tuple[str, ...], stations: int = 0) -> list[Var
         *_own_parameters(),
         *_parameters(model),
         *_outputs(scalars),
+        *_places(),
+        *_peaks(),
         *_status(),
         *(_station(*row, stations) for row in _STATIONS if stations),
     ]
@@ -244,6 +269,21 @@ def _outputs(scalars: tuple[str, ...]) -> Iterator[Variable]:
         kind = INTEGER if quantity.integer else REAL
         units = ("", "") if quantity.integer else (quantity.unit, quantity.display_unit)
         yield Variable(output_name(name), kind, OUTPUT, quantity.long_name, None, *units, source=name)
+
+
+def _places() -> Iterator[Variable]:
+    for name, quantity in PLACE_OF_LARGEST.items():
+        text = f"{QUANTITIES[quantity].long_name}, of the largest force of a single contact with the vessel; 0 for none"
+        yield Variable(name, REAL, OUTPUT, text, None, QUANTITIES[quantity].unit, QUANTITIES[quantity].display_unit)
+
+
+def _peaks() -> Iterator[Variable]:
+    for peak in PEAKS:
+        known = QUANTITIES["push_force" if peak == "pull_force" else peak]
+        what = "pull force (negative push force)" if peak == "pull_force" else known.long_name
+        (name, when), unit = peak_names(peak), (known.unit, known.display_unit)
+        yield Variable(name, REAL, OUTPUT, f"largest {what} over all solver steps so far; 0 for none", None, *unit)
+        yield Variable(when, REAL, OUTPUT, f"time of the largest {what}", None, "s")
 
 
 def _status() -> Iterator[Variable]:

@@ -5,6 +5,7 @@ It greets the wrapper before it loads the heavy packages, so that they load whil
 
 from __future__ import annotations
 
+import gc
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -120,8 +121,12 @@ def main(arguments: Sequence[str]) -> None:
     (resources,) = arguments
 
     def load() -> Plant:
+        # Next to nothing that is loaded here is ever freed, so looking for what could be only takes time.
+        gc.disable()
         from gw_exudyn.fmi.plant import ScenarioPlant
 
+        gc.freeze()
+        gc.enable()
         return ScenarioPlant(resources)
 
     work(load)

@@ -86,9 +86,10 @@ class SimulationRunner:
 
 
 def make_runner(name: str) -> Runner:
-    """The runner that a name as `module:Class` stands for."""
-    module, _, attribute = name.partition(":")
+    """The runner that a name as `module:Class` stands for, or `module:Class:text`, where the text is for the class."""
+    module, _, rest = name.partition(":")
+    attribute, *text = rest.split(":", 1)
     if not module or not attribute:
         raise UsageError(f"{name!r} names no runner; write module:Class, as {SIMULATION}")
-    runner: Runner = getattr(import_module(module), attribute)()
+    runner: Runner = getattr(import_module(module), attribute)(*text)
     return runner

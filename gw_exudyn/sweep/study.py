@@ -12,7 +12,8 @@ from typing import Annotated, Any, ClassVar, TypeVar, cast
 
 from pydantic import Field, ValidationError, field_validator
 
-from gw_exudyn.errors import Problem, ScenarioError
+from gw_exudyn.errors import Problem, ScenarioError, StorageError
+from gw_exudyn.fmi.resources import scenario_in
 from gw_exudyn.metrics import Metric
 from gw_exudyn.scenario import Scenario
 from gw_exudyn.scenario.fields import Choice, Faults, Kind, Section, Table, Text, Whole, wrong
@@ -77,7 +78,8 @@ class StudyForm(Section):
         default=None, description="name of the study and of its folder; the file's name if not given"
     )
     base: Annotated[str, Text("scenario")] = Field(
-        description="the scenario that is varied: a file, or a shipped one's name", examples=["corner90-universal"]
+        description="the scenario that is varied: a file, a shipped one's name, or an FMU",
+        examples=["corner90-universal"],
     )
     fixed: Annotated[dict[str, Any], Paths()] = Field(
         default_factory=dict, alias="set", description="dotted paths of the scenario: their values in all points"
@@ -138,6 +140,12 @@ class Study:
     _source: YamlSource = field(repr=False)
     _folder: Path = field(repr=False)
     _places: Mapping[str, Place] = field(repr=False)
+
+    @property
+    def fmu(self) -> Path | None:
+        """The FMU whose scenario is varied; None where the base is a scenario's file."""
+        path = _beside(self.base, self.file)
+        return path if path.suffix == ".fmu" else None
 
     def __len__(self) -> int:
         """How many points there are."""
@@ -378,10 +386,12 @@ def read_base(base: str, file: Path, source: YamlSource, problems: list[Problem]
     """The scenario that is varied, read, and the folder that its files are relative to."""
     if base == NONE:
         return None, file.parent
-    beside = file.parent / base
     try:
-        path = beside if beside.is_file() else resolve(base)
-        read = read_yaml(path)
+        path = _beside(base, file)
+        read = YamlSource(scenario_in(path)) if path.suffix == ".fmu" else read_yaml(path)
+    except StorageError as error:
+        problems.append(Problem("base", str(error), *source.places.get("base", (str(file), None))))
+        return None, file.parent
     except ScenarioError as error:
         place = source.places.get("base", (str(file), None))
         for problem in error.problems:
@@ -390,6 +400,12 @@ def read_base(base: str, file: Path, source: YamlSource, problems: list[Problem]
         return None, file.parent
     read.data.setdefault("name", name_from(path))
     return read, path.parent
+
+
+def _beside(base: str, file: Path) -> Path:
+    """The file of the base: beside the study, or elsewhere. Raises ScenarioError."""
+    beside = file.parent / base
+    return beside if beside.is_file() else resolve(base)
 
 
 def _design(

@@ -25,7 +25,7 @@ def test_a_dry_run_shows_points_time_and_disk_and_writes_nothing(gw, study):
     done = gw("sweep", study, "--dry-run", "--jobs", "2")
     assert done.code == 0
     lines = done.out.splitlines()
-    assert lines[0].split() == ["point", "id", "contact.friction_coefficient", "wire.diameter"]
+    assert lines[0].split() == ["point", "id", "contact.friction_coefficient", "wire.diameter", "[m]"]
     assert [line.split(maxsplit=4)[-1] for line in lines[1:]] == ["to run", "as 0", "to run", "as 2"]
     assert "2 points to run, about" in done.err
     assert "was run to see" in done.err

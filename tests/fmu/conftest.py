@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import platform
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -32,3 +33,11 @@ def fmus(scenario, tmp_path_factory) -> dict[int, Path]:
 @pytest.fixture(params=[2, 3], ids=["fmi2", "fmi3"])
 def fmu(request, fmus) -> Path:
     return fmus[request.param]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _own_cache(tmp_path_factory) -> Iterator[None]:
+    """FMUs are unpacked in a cache of the tests' own."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        yield
