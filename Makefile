@@ -43,7 +43,7 @@ paper: $(VENV)/.ready-dev
 	@for script in $(STUDY); do $(BIN)/python scenarios/paper/$$script.py || exit 1; done
 
 test: $(VENV)/.ready-dev
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto
 
 verify: $(VENV)/.ready
 	$(BIN)/gw-exudyn verify
