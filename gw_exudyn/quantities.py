@@ -296,6 +296,29 @@ def display(name: str, value: float, digits: int = 3) -> str:
     return number if unit == "1" else f"{number} {plain(unit)}"
 
 
+LIKE: Mapping[str, str] = MappingProxyType(
+    {
+        "m": "tip_x",
+        "N": "push_force",
+        "J": "insertion_work",
+        "rad": "tip_angle",
+        "s": "time",
+        "m/s": "drive_speed",
+        "m s-1": "drive_speed",
+        "1": "contacts",
+    }
+)
+"""A quantity of each unit, whose display unit serves for parameters and metrics that are no quantity by themselves."""
+
+
+def number_text(name: str, value: float | None, unit: str) -> str:
+    """A number in SI, of the quantity `name` or of any in `unit`, as people read it; a dash where there is none."""
+    if value is None or not math.isfinite(value):
+        return "-"
+    like = name if name in QUANTITIES else LIKE.get(unit)
+    return display(like, value) if like else f"{value:.4g} {unit}"
+
+
 def plain(unit: str) -> str:
     """The unit as people write it: the micro sign instead of the `u` that files use, the degree sign for angles."""
     if unit == "deg":

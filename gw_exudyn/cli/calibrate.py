@@ -114,7 +114,7 @@ def _progress(calibration: Calibration, quiet: bool) -> Look:
 
 
 def _put_tables(done: Summary) -> None:
-    from gw_exudyn.cli.numbers import number_text
+    from gw_exudyn.quantities import number_text
 
     report = done.report
     rows: list[tuple[str, ...]] = [("parameter", "value", "+- (95 %)", "low", "high", "")]

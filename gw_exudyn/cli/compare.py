@@ -146,7 +146,7 @@ def _put_json(
 
 
 def _put_tables(norms: Mapping[str, Norm], changed: list[Difference] | None, files: list[Path]) -> None:
-    from gw_exudyn.cli.numbers import number_text
+    from gw_exudyn.quantities import number_text
 
     put_table([(name, number_text(name, norm.value, norm.unit), norm.meaning) for name, norm in norms.items()], [1])
     put("")
@@ -165,6 +165,6 @@ def _text(value: object) -> str:
 
 
 def _beyond(name: str, norm: Norm, limit: float) -> str:
-    from gw_exudyn.cli.numbers import number_text
+    from gw_exudyn.quantities import number_text
 
     return f"{name}: {number_text(name, norm.value, norm.unit)} is beyond {number_text(name, limit, norm.unit)}"

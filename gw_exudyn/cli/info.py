@@ -72,7 +72,7 @@ def _fact_rows(content: dict[str, Any]) -> list[tuple[str, str]]:
 
 
 def _metric_rows(content: dict[str, Any]) -> list[tuple[str, str, str]]:
-    from gw_exudyn.cli.numbers import number_text
+    from gw_exudyn.quantities import number_text
 
     return [
         (name, str(metric.get("label") or number_text(name, metric["value"], metric["unit"])), str(metric["meaning"]))

@@ -14,7 +14,7 @@ from gw_exudyn.comparison import differences
 from gw_exudyn.errors import StorageError, UsageError
 from gw_exudyn.metrics import Metric, metrics
 from gw_exudyn.plots.save import render_figures
-from gw_exudyn.quantities import QUANTITIES, display
+from gw_exudyn.quantities import number_text
 from gw_exudyn.report.pack import packed_run, scalars_table
 
 if TYPE_CHECKING:
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 MOST_RUNS = 4
 _FIGURES = ("insertion", "forces", "tip_path", "energy", "contact_map")
-_LIKE = {"m": "tip_x", "N": "push_force", "J": "insertion_work", "rad": "tip_angle", "s": "time", "1": "contacts"}
 
 
 def report_page(results: Sequence[Result], *, title: str = "", figures: bool = True) -> str:
@@ -98,7 +97,7 @@ def _metric_text(name: str, metric: Metric | None) -> str:
     """A metric as text; nothing where the run has none of that name."""
     if metric is None:
         return ""
-    return metric.label or _number(name, metric.value, metric.unit)
+    return metric.label or number_text(name, metric.value, metric.unit)
 
 
 def _scenarios(results: Sequence[Result], names: Sequence[str]) -> str:
@@ -143,13 +142,6 @@ def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
     body = "".join(f"<tr>{cells(row, 'td')}</tr>" for row in rows)
     return f'<div class="wide"><table><thead><tr>{cells(head, "th")}</tr></thead><tbody>{body}</tbody></table></div>'
-
-
-def _number(name: str, value: float, unit: str) -> str:
-    if value != value:
-        return "-"
-    like = name if name in QUANTITIES else _LIKE.get(unit)
-    return display(like, value) if like else f"{value:.4g} {unit}"
 
 
 def _plain(value: Any) -> str:

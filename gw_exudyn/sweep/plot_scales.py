@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gw_exudyn.plots.style import axis_label, shown
-from gw_exudyn.quantities import plain
+from gw_exudyn.quantities import LIKE, plain
 from gw_exudyn.result import Floats
 from gw_exudyn.sweep.axes import Axis
 
@@ -18,23 +17,10 @@ if TYPE_CHECKING:
 COLOUR_MAP = "cividis"
 """Told apart with any colour vision, and in grey."""
 
-# A quantity of each unit, whose display unit serves for parameters and metrics in the same unit.
-_LIKE = MappingProxyType(
-    {
-        "m": "tip_x",
-        "N": "push_force",
-        "J": "insertion_work",
-        "rad": "tip_angle",
-        "s": "time",
-        "m/s": "drive_speed",
-        "m s-1": "drive_speed",
-    }
-)
-
 
 def scaled(text: str, unit: str, values: Floats) -> tuple[str, Floats]:
     """Label with unit, and the values in it, of something in SI."""
-    like = _LIKE.get(unit)
+    like = LIKE.get(unit)
     if like is None:
         return axis_label(text, unit), values
     name, factor = shown(like, values)
@@ -53,7 +39,7 @@ def metric_words(study: Study, name: str, value: float) -> str:
 
 def value_words(unit: str, value: float) -> str:
     """A value in SI in words: `20.7 mN`."""
-    shown_unit, factor = shown(_LIKE[unit], np.array([value])) if unit in _LIKE else (unit, 1.0)
+    shown_unit, factor = shown(LIKE[unit], np.array([value])) if unit in LIKE else (unit, 1.0)
     number = f"{value * factor:.3g}"
     return number if shown_unit == "1" else f"{number} {plain(shown_unit)}"
 
