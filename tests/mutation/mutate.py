@@ -188,8 +188,8 @@ def apply(mutant: Mutant, folder: Path) -> None:
 _BUILD = """
 import platform
 from gw_exudyn.model.kernel import library_name
-from gw_exudyn.model.kernel.build import LIBRARIES, build
-build(library_name(platform.system(), platform.machine()), LIBRARIES)
+from gw_exudyn.model.kernel.build import KERNELS
+KERNELS.build(library_name(platform.system(), platform.machine()), KERNELS.folder)
 """
 
 
