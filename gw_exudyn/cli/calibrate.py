@@ -34,8 +34,8 @@ CALIBRATIONS = Path("results", "calibrations")
 @click.argument("file", metavar="FILE")
 @options.overrides
 @click.option("--out", metavar="DIR", help=f"The folder. Without: {CALIBRATIONS.as_posix()}/NAME.")
-@click.option("--jobs", "-j", type=click.IntRange(1, 1024), metavar="N", help="Worker processes. Without: one a core.")
-@click.option("--scheduler", metavar="ADDRESS", help="Use the workers of this dask scheduler, as tcp://host:8786.")
+@options.jobs
+@options.scheduler
 @click.option(
     "--timeout",
     type=click.FloatRange(0.0, min_open=True),

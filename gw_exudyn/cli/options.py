@@ -13,6 +13,12 @@ overrides = click.option(
     metavar="PATH=VALUE",
     help="Override a value of the scenario, as wire.segments=100 or drive.speed='1 mm/s'. May be repeated.",
 )
+jobs = click.option(
+    "--jobs", "-j", type=click.IntRange(1, 1024), metavar="N", help="Worker processes. Without: one a core."
+)
+scheduler = click.option(
+    "--scheduler", metavar="ADDRESS", help="Use the workers of this dask scheduler, as tcp://host:8786."
+)
 as_json = click.option("--json", "as_json", is_flag=True, help="Write JSON to stdout, for a program to read.")
 
 

@@ -33,8 +33,8 @@ _FAILURES_TOLD = 10
 @click.argument("study", metavar="STUDY")
 @options.overrides
 @click.option("--out", metavar="DIR", help=f"The folder of the sweep. Without: {SWEEPS.as_posix()}/NAME.")
-@click.option("--jobs", "-j", type=click.IntRange(1, 1024), metavar="N", help="Worker processes. Without: one a core.")
-@click.option("--scheduler", metavar="ADDRESS", help="Use the workers of this dask scheduler, as tcp://host:8786.")
+@options.jobs
+@options.scheduler
 @click.option(
     "--timeout",
     type=click.FloatRange(0.0, min_open=True),

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gw_exudyn.errors import StorageError, UsageError
-from gw_exudyn.plots.arrows import bundles, round_down
-from gw_exudyn.plots.contact_vectors import contact_vectors
+from gw_exudyn.plots.arrows import BUNDLE, LONGEST_ARROW, bundles, draw_arrows, round_down
+from gw_exudyn.plots.contact_vectors import vessel_contacts
 from gw_exudyn.plots.scene import beyond_exit, centreline, draw_vessel, panel_size, set_view, view, wire_area
 from gw_exudyn.plots.style import (
     BLACK,
@@ -44,8 +44,6 @@ if TYPE_CHECKING:
 
 FORMATS = (".gif", ".mp4")
 _RESOLUTION = 100
-_LONGEST_ARROW = 0.15
-_BUNDLE = 0.015
 
 
 class Film:
@@ -90,7 +88,7 @@ class Film:
         )
         warn_untrusted(axes, self._result)
         if self._per_newton > 0:
-            force = round_down(self._size * _LONGEST_ARROW / self._per_newton)
+            force = round_down(self._size * LONGEST_ARROW / self._per_newton)
             self._key(axes, limits, force)
 
     def _key(self, axes: Axes, limits: Floats, force: float) -> None:
@@ -128,25 +126,7 @@ class Film:
     def _arrows(self, instant: int) -> list[Any]:
         points, forces = _forces(self._result, instant, self._size)
         kept = np.linalg.norm(forces, axis=1) * self._per_newton > 0.005 * self._size
-        if not kept.any():
-            return []
-        scale = place_factor()
-        ends = self._per_newton * forces[kept]
-        return [
-            self._axes.quiver(
-                *(points[kept] * scale).T,
-                *(ends * scale).T,
-                angles="xy",
-                scale_units="xy",
-                scale=1.0,
-                units="inches",
-                width=1.6 / 72,
-                headwidth=4.0,
-                headlength=5.0,
-                color=FORCE_COLOUR,
-                zorder=7,
-            )
-        ]
+        return draw_arrows(self._axes, points[kept], self._per_newton * forces[kept], FORCE_COLOUR, 7.0)
 
 
 def save_animation(
@@ -202,8 +182,7 @@ def _write(
 
 def _forces(result: Result, instant: int, size: float) -> tuple[Floats, Floats]:
     """Points and forces, both (k, 2), on the vessel at an instant, close neighbours put together."""
-    points, forces, owners = contact_vectors(result, instant)
-    return bundles(points[owners == 0], forces[owners == 0], size * _BUNDLE)
+    return bundles(*vessel_contacts(result, instant), size * BUNDLE)
 
 
 def _arrow_length(result: Result, size: float) -> float:
@@ -212,4 +191,4 @@ def _arrow_length(result: Result, size: float) -> float:
         (float(np.linalg.norm(_forces(result, i, size)[1], axis=1).max(initial=0.0)) for i in range(len(result.time))),
         default=0.0,
     )
-    return _LONGEST_ARROW * size / largest if largest > 0 else 0.0
+    return LONGEST_ARROW * size / largest if largest > 0 else 0.0

@@ -11,9 +11,16 @@ import numpy as np
 from gw_exudyn.plots.style import place_factor
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
 
     from gw_exudyn.result import Floats
+
+LONGEST_ARROW = 0.15
+"""Length of the longest arrow over the longer side of the view."""
+
+BUNDLE = 0.015
+"""Contacts closer to each other than this part of the view share one arrow, their resultant."""
 
 # Where the largest forces of two panels differ by more than this, one scale would leave one of them without arrows.
 _WIDEST_COMMON_RANGE = 5.0
@@ -56,10 +63,14 @@ def bundles(points: Floats, forces: Floats, spacing: float) -> tuple[Floats, Flo
     return np.array(middles).reshape(-1, 2), np.array([forces[bundle].sum(axis=0) for bundle in members]).reshape(-1, 2)
 
 
-def draw_arrows(axes: Axes, points: Floats, lengths: Floats, colour: tuple[float, ...], zorder: float) -> None:
-    """Draw arrows from the points (k, 2), m, along `lengths` (k, 2), m."""
+def draw_arrows(
+    axes: Axes, points: Floats, lengths: Floats, colour: tuple[float, ...] | str, zorder: float
+) -> list[Artist]:
+    """Draw arrows from the points (k, 2), m, along `lengths` (k, 2), m; what was drawn."""
+    if not len(points):
+        return []
     scale = place_factor()
-    if len(points):
+    return [
         axes.quiver(
             *(points * scale).T,
             *(lengths * scale).T,
@@ -75,6 +86,7 @@ def draw_arrows(axes: Axes, points: Floats, lengths: Floats, colour: tuple[float
             color=colour,
             zorder=zorder,
         )
+    ]
 
 
 def round_down(value: float) -> float:

@@ -35,6 +35,12 @@ def contact_vectors(result: Result, instant: int) -> tuple[Floats, Floats, Float
     return points[good], forces[good], contacts["contact_owner"][good]
 
 
+def vessel_contacts(result: Result, instant: int) -> tuple[Floats, Floats]:
+    """Points and forces, both (c, 2), of the contacts with the vessel; those with the catheter load no vessel."""
+    points, forces, owners = contact_vectors(result, instant)
+    return points[owners == 0], forces[owners == 0]
+
+
 def _on_wire(result: Result, instant: int, place: Floats) -> tuple[Floats, Floats]:
     """Points on the wire's axis at the arc lengths `place` (c,) from the tip, and unit tangents towards the tip, both
     (c, 2).

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from gw_exudyn.metrics import metrics
-from gw_exudyn.plots.arrows import ForceScale, arrow_lengths, bundles, draw_arrows, round_down
+from gw_exudyn.plots.arrows import BUNDLE, LONGEST_ARROW, ForceScale, arrow_lengths, bundles, draw_arrows, round_down
 from gw_exudyn.plots.branch_names import draw_branch_names
-from gw_exudyn.plots.contact_vectors import contact_vectors
+from gw_exudyn.plots.contact_vectors import vessel_contacts
 from gw_exudyn.plots.scene import (
     beyond_exit,
     centreline,
@@ -45,12 +45,8 @@ if TYPE_CHECKING:
 
     from gw_exudyn.result import Floats, Result
 
-# Length of the longest arrow over the longer side of the view.
-_LONGEST_ARROW = 0.15
 # Arrows shorter than this part of the longest are left out: they would be dots.
 _SHORTEST_ARROW = 0.04
-# Contacts closer to each other than this part of the view share one arrow, their resultant.
-_BUNDLE = 0.015
 # How far below the panel the legend begins and the arrow of the key lies; typographic points.
 _LEGEND_DEPTH = 34.0
 _KEY_DEPTH = 82.0
@@ -103,8 +99,8 @@ def plot_insertion(
     panels = [_panel(result, depths, arrows) for result in as_results(results)]
     found = [view(p.result, np.concatenate([beyond_exit(p.result, i) for i in p.instants])) for p in panels]
     size = max(float(np.diff(one, axis=0).max()) for one in found)
-    panels = [_bundled(p, size * _BUNDLE) for p in panels]
-    per_newton = arrow_lengths([p.largest_force for p in panels], size * _LONGEST_ARROW, force_scale)
+    panels = [_bundled(p, size * BUNDLE) for p in panels]
+    per_newton = arrow_lengths([p.largest_force for p in panels], size * LONGEST_ARROW, force_scale)
     found = [_with_arrows(p, one, length) for p, one, length in zip(panels, found, per_newton, strict=True)]
     limits = common_views([p.result for p in panels], found)
     figure, all_axes = _layout(len(panels), limits[0])
@@ -118,19 +114,13 @@ def plot_insertion(
 def _panel(result: Result, depths: int | Sequence[float], arrows: Arrows) -> _Panel:
     instants = _instants(result, depths)
     with_arrows = {"each": instants, "last": instants[-1:], "none": []}[arrows]
-    return _Panel(result, instants, {instant: _vessel_contacts(result, instant) for instant in with_arrows})
+    return _Panel(result, instants, {instant: vessel_contacts(result, instant) for instant in with_arrows})
 
 
 def _bundled(panel: _Panel, spacing: float) -> _Panel:
     """The panel with contacts closer than `spacing` (m) to each other put together."""
     contacts = {instant: bundles(points, forces, spacing) for instant, (points, forces) in panel.contacts.items()}
     return replace(panel, contacts=contacts)
-
-
-def _vessel_contacts(result: Result, instant: int) -> tuple[Floats, Floats]:
-    """Points and forces, both (c, 2), of the contacts with the vessel; those with the catheter load no vessel."""
-    points, forces, owners = contact_vectors(result, instant)
-    return points[owners == 0], forces[owners == 0]
 
 
 def _instants(result: Result, depths: int | Sequence[float]) -> list[int]:
