@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from gw_exudyn.verification.insertions import channel
+
 Point = tuple[float, float]
 
 WIRES: dict[str, dict[str, Any]] = {"universal": {"model": "universal-ii"}, "amplatz": {"model": "amplatz-super-stiff"}}
@@ -137,19 +139,6 @@ def path_of(*stretches: tuple[float, float]) -> list[Point]:
 def turned(length: float, degrees: float) -> Point:
     """A point at a distance and a direction from the origin."""
     return length * math.cos(math.radians(degrees)), length * math.sin(math.radians(degrees))
-
-
-def channel(path: Sequence[Point], diameter: float) -> dict[str, Any]:
-    """A channel with sharp, mitred corners along a path, both ends open."""
-    p = np.array(path)
-    d = np.diff(p, axis=0)
-    d /= np.hypot(*d.T)[:, None]
-    normal = np.column_stack([-d[:, 1], d[:, 0]])
-    mitre = normal[:-1] + normal[1:]
-    mitre /= (mitre * normal[1:]).sum(axis=1)[:, None]
-    across = diameter / 2 * np.vstack([normal[:1], mitre, normal[-1:]])
-    points = [*map(tuple, p - across), *map(tuple, (p + across)[::-1])]
-    return polygon(points, open_edges=(len(p) - 1, 2 * len(p) - 1))
 
 
 def polygon(points: Sequence[Any], open_edges: Sequence[int]) -> dict[str, Any]:

@@ -30,7 +30,7 @@ from harness import machine, verdict
 
 from gw_exudyn.sweep.run import Options, Progress, run_sweep
 from gw_exudyn.sweep.runner import Outcome, SimulationRunner, Task
-from gw_exudyn.sweep.study import load_study
+from gw_exudyn.sweep.study_loading import load_study
 
 TIMES = "times.json"
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from dataclasses import replace
@@ -13,6 +12,7 @@ import numpy as np
 from gw_exudyn.comparison import COMPARED, PATH, Course, Floats, at, common_time
 from gw_exudyn.errors import ComparisonError, Problem, ScenarioError, StorageError, UnitError
 from gw_exudyn.quantities import QUANTITIES
+from gw_exudyn.scenario.csv_lines import csv_cells, data_lines
 from gw_exudyn.scenario.units import Unit, in_si, parse_number, parse_unit
 from gw_exudyn.scenario.words import did_you_mean, shown
 from gw_exudyn.scenario.yaml_source import read_text
@@ -83,12 +83,11 @@ def aligned(measured: Course, run: Course) -> Course:
 
 def _rows(text: str, file: Path, faults: list[Problem]) -> list[tuple[int, list[str]]]:
     rows = []
-    for number, line in enumerate(text.splitlines(), 1):
-        if line.strip() and not line.lstrip().startswith("#"):
-            try:
-                rows.append((number, next(csv.reader([line]))))
-            except csv.Error as error:
-                faults.append(Problem("", f"is no CSV row: {error}", str(file), number))
+    for number, line in data_lines(text):
+        try:
+            rows.append((number, csv_cells(line)))
+        except ValueError as error:
+            faults.append(Problem("", str(error), str(file), number))
     return rows
 
 

@@ -207,15 +207,15 @@ def attributes(quantity: Quantity) -> dict[str, Any]:
     return attrs
 
 
-def software_versions() -> dict[str, str]:
-    """Versions of what takes part in a run."""
+def software_versions(*further: str) -> dict[str, str]:
+    """Versions of what takes part in a run, and of the `further` packages."""
     from importlib.metadata import PackageNotFoundError, version
 
     import gw_exudyn
 
     # Its own word, since a checkout on the path is not installed, or is another version than the one that is.
     versions = {"python": platform.python_version(), "gw-exudyn": gw_exudyn.__version__}
-    for package in ("exudyn", "numpy", "xarray", "h5netcdf"):
+    for package in ("exudyn", "numpy", "xarray", "h5netcdf", *further):
         try:
             versions[package] = version(package)
         except PackageNotFoundError:

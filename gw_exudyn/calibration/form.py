@@ -19,16 +19,21 @@ from gw_exudyn.measured import read_measured
 from gw_exudyn.quantities import QUANTITIES
 from gw_exudyn.result import Floats
 from gw_exudyn.scenario import Scenario
-from gw_exudyn.scenario.fields import Faults, Flag, Kind, Quantity, Section, Table, Text, wrong
+from gw_exudyn.scenario.faults import Faults, wrong
+from gw_exudyn.scenario.fields import Flag, Kind, Quantity, Table, Text
 from gw_exudyn.scenario.loading import name_from
 from gw_exudyn.scenario.problems import in_order, problems_of
+from gw_exudyn.scenario.section import Section
 from gw_exudyn.scenario.units import NUMBER, parse_unit
 from gw_exudyn.scenario.words import did_you_mean, shown
 from gw_exudyn.scenario.yaml_source import Place, YamlSource, read_yaml
 from gw_exudyn.sweep.axes import Axis, read_number
 from gw_exudyn.sweep.design import grid, zipped
-from gw_exudyn.sweep.study import NONE, Paths, Study, folder_name, read_base, read_fixed, read_form, told_once
-from gw_exudyn.sweep.study import value_problems as problems_of_values
+from gw_exudyn.sweep.study import Study
+from gw_exudyn.sweep.study_form import Paths, folder_name
+from gw_exudyn.sweep.study_loading import NONE, read_base, read_fixed, read_form
+from gw_exudyn.sweep.study_loading import value_problems as problems_of_values
+from gw_exudyn.sweep.study_problems import told_once
 from gw_exudyn.sweep.value_kinds import value_kind
 
 TIP = "tip"

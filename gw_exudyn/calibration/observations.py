@@ -47,7 +47,7 @@ class Observations:
     """
 
     def __init__(self, measured: Sequence[Course], noise: Mapping[str, float], align: bool, end: float) -> None:
-        self._noise, self._align = noise, align
+        self._noise = noise
         self.courses = [_until(course, end) for course in measured]
         self.left_out = sum(len(course.time) for course in measured) - sum(len(course.time) for course in self.courses)
         self.end = max(float(course.time[-1]) for course in self.courses)

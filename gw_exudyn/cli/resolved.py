@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from gw_exudyn.scenario.fields import Quantity, Row, Section
+from gw_exudyn.scenario.fields import Quantity, Row
 from gw_exudyn.scenario.kinds import (
     BENDING_STIFFNESS,
     COORDINATE,
@@ -16,6 +16,7 @@ from gw_exudyn.scenario.kinds import (
     HUB_SPEED,
     SPEED,
 )
+from gw_exudyn.scenario.section import Section
 from gw_exudyn.scenario.units import format_quantity
 
 if TYPE_CHECKING:

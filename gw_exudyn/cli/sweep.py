@@ -75,7 +75,7 @@ def command(
     from gw_exudyn.sweep.fmu_runner import FMU, check_options, fmu_runner
     from gw_exudyn.sweep.run import Options, make_plan, run_sweep
     from gw_exudyn.sweep.runner import SIMULATION
-    from gw_exudyn.sweep.study import load_study
+    from gw_exudyn.sweep.study_loading import load_study
 
     if engine == "fmu":
         check_options(keep_runs, scheduler)

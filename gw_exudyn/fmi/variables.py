@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 from gw_exudyn.quantities import QUANTITIES
 from gw_exudyn.result import Status
-from gw_exudyn.scenario.fields import Choice, Number, Quantity, Section, Whole
+from gw_exudyn.scenario.fields import Choice, Number, Quantity, Whole
+from gw_exudyn.scenario.section import Section
 
 if TYPE_CHECKING:
     from gw_exudyn.model import Model

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from gw_exudyn.result import Floats, Result
-    from gw_exudyn.scenario.regions import Region
+    from gw_exudyn.scenario.vessels.regions import Region
 
 _PLACES = (0.7, 0.55, 0.85, 0.4)
 """Where along a branch its name may stand, best first; away from where branches meet."""

@@ -9,40 +9,41 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from gw_exudyn.scenario.branches import BranchesVessel
     from gw_exudyn.scenario.catalogue import CatalogueWire, catalogue_names, load_catalogue
-    from gw_exudyn.scenario.drive import SpeedDrive
+    from gw_exudyn.scenario.drives.force import ForceDrive
+    from gw_exudyn.scenario.drives.speed import SpeedDrive
+    from gw_exudyn.scenario.drives.tip_speed import TipSpeedDrive
     from gw_exudyn.scenario.loading import load_scenario, scenario_from_dict
     from gw_exudyn.scenario.loads import DiscSpec, NoseSpec, TipSpec
-    from gw_exudyn.scenario.other_drives import ForceDrive, TipSpeedDrive
     from gw_exudyn.scenario.schema import CatheterSpec, ContactSpec, OutputSpec, Scenario, SolverSpec, json_schema
     from gw_exudyn.scenario.shipped import list_shipped, resolve, shipped_folder
     from gw_exudyn.scenario.stiffness import StiffnessPiece
     from gw_exudyn.scenario.stop import StopSpec, TargetSpec
     from gw_exudyn.scenario.units import format_quantity, parse_quantity, parse_unit
-    from gw_exudyn.scenario.vessel import ArcVessel, NoVessel, PolygonVessel, StraightVessel
+    from gw_exudyn.scenario.vessels.branches import BranchesVessel
+    from gw_exudyn.scenario.vessels.vessel import ArcVessel, NoVessel, PolygonVessel, StraightVessel
     from gw_exudyn.scenario.wire import TipShape, WireSpec
 
 _HOME = {
-    "ArcVessel": "vessel",
-    "BranchesVessel": "branches",
+    "ArcVessel": "vessels.vessel",
+    "BranchesVessel": "vessels.branches",
     "CatalogueWire": "catalogue",
     "CatheterSpec": "schema",
     "ContactSpec": "schema",
     "DiscSpec": "loads",
-    "ForceDrive": "other_drives",
-    "NoVessel": "vessel",
+    "ForceDrive": "drives.force",
+    "NoVessel": "vessels.vessel",
     "NoseSpec": "loads",
     "OutputSpec": "schema",
-    "PolygonVessel": "vessel",
+    "PolygonVessel": "vessels.vessel",
     "Scenario": "schema",
     "SolverSpec": "schema",
-    "SpeedDrive": "drive",
+    "SpeedDrive": "drives.speed",
     "StiffnessPiece": "stiffness",
     "StopSpec": "stop",
-    "StraightVessel": "vessel",
+    "StraightVessel": "vessels.vessel",
     "TargetSpec": "stop",
-    "TipSpeedDrive": "other_drives",
+    "TipSpeedDrive": "drives.tip_speed",
     "TipShape": "wire",
     "TipSpec": "loads",
     "WireSpec": "wire",

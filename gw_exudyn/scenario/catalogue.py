@@ -11,9 +11,10 @@ from typing import Annotated
 from pydantic import Field, ValidationError
 
 from gw_exudyn.errors import ScenarioError
-from gw_exudyn.scenario.fields import Choice, Section, Text
+from gw_exudyn.scenario.fields import Choice, Text
 from gw_exudyn.scenario.kinds import ARC_LENGTH, BENDING_STIFFNESS_OR_NONE, DENSITY, WIRE_DIAMETER, WIRE_LENGTH
 from gw_exudyn.scenario.problems import problems_of
+from gw_exudyn.scenario.section import Section
 from gw_exudyn.scenario.stiffness import StiffnessPiece
 from gw_exudyn.scenario.yaml_source import parse_yaml
 

@@ -7,8 +7,10 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from gw_exudyn.scenario.fields import Faults, Number, Section
+from gw_exudyn.scenario.faults import Faults
+from gw_exudyn.scenario.fields import Number
 from gw_exudyn.scenario.kinds import ARC_LENGTH, FRICTION, PATCH_REACH, POINT
+from gw_exudyn.scenario.section import Section
 from gw_exudyn.scenario.units import format_quantity
 
 Point = tuple[float, float]

@@ -15,8 +15,8 @@ from gw_exudyn.errors import Problem, ScenarioError
 from gw_exudyn.scenario.overrides import Overrides, apply_overrides
 from gw_exudyn.scenario.problems import in_order, problems_of
 from gw_exudyn.scenario.schema import Scenario, with_places
-from gw_exudyn.scenario.shared_vessel import insert_vessel
 from gw_exudyn.scenario.shipped import resolve
+from gw_exudyn.scenario.vessels.shared_vessel import insert_vessel
 from gw_exudyn.scenario.yaml_source import YamlSource, read_yaml
 
 

@@ -6,7 +6,8 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field, ValidationInfo, field_validator
 
-from gw_exudyn.scenario.fields import Choice, Row, Section, wrong
+from gw_exudyn.scenario.faults import wrong
+from gw_exudyn.scenario.fields import Choice, Row
 from gw_exudyn.scenario.kinds import (
     ANGLE,
     DISC_RADIUS,
@@ -18,6 +19,7 @@ from gw_exudyn.scenario.kinds import (
     NOSE_TRAVEL,
     POINT,
 )
+from gw_exudyn.scenario.section import Section
 
 _PAIR = (FORCE, FORCE)
 

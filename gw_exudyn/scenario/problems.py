@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pydantic import ValidationError
 
 from gw_exudyn.errors import Problem
-from gw_exudyn.scenario.fields import KIND_TAG
+from gw_exudyn.scenario.section import KIND_TAG
 from gw_exudyn.scenario.words import path_text
 from gw_exudyn.scenario.yaml_source import Place
 

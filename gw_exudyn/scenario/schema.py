@@ -14,8 +14,9 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator
 
 from gw_exudyn.errors import Problem
-from gw_exudyn.scenario.drive import Drive
-from gw_exudyn.scenario.fields import Faults, Section, Text, wrong
+from gw_exudyn.scenario.drives.drive import Drive
+from gw_exudyn.scenario.faults import refuse, wrong
+from gw_exudyn.scenario.fields import Text
 from gw_exudyn.scenario.friction import FrictionPatch
 from gw_exudyn.scenario.kinds import (
     ANGLE,
@@ -33,8 +34,9 @@ from gw_exudyn.scenario.kinds import (
 )
 from gw_exudyn.scenario.loads import DiscSpec, NoseSpec, TipSpec
 from gw_exudyn.scenario.problems import place_of
+from gw_exudyn.scenario.section import Section
 from gw_exudyn.scenario.stop import StopSpec, check_target
-from gw_exudyn.scenario.vessel import Vessel
+from gw_exudyn.scenario.vessels.vessel import Vessel
 from gw_exudyn.scenario.wire import WireSpec
 from gw_exudyn.scenario.words import shown
 from gw_exudyn.scenario.yaml_source import Place
@@ -188,9 +190,7 @@ class Scenario(Section):
     def _has_a_bore(cls, catheter: CatheterSpec, info: ValidationInfo) -> CatheterSpec:
         vessel = info.data.get("vessel")
         if catheter.bore is None and vessel is not None and vessel.kind != "none":
-            faults = Faults()
-            faults.add(("bore",), wrong("is missing: inner diameter; for example bore: 1.2 mm", missing=True))
-            faults.raise_if_any()
+            refuse(("bore",), wrong("is missing: inner diameter; for example bore: 1.2 mm", missing=True))
         return catheter
 
     @field_validator("drive", mode="after")
@@ -198,10 +198,8 @@ class Scenario(Section):
     def _held_by_one(cls, drive: Drive, info: ValidationInfo) -> Drive:
         catheter = info.data.get("catheter")
         if catheter is not None and catheter.is_sleeve and drive.hold != "clamped":
-            faults = Faults()
             text = f"an end that is {drive.hold} cannot be in a sleeve, which holds its direction; "
-            faults.add(("hold",), f"{text}leave it out, or give catheter.bore as a length")
-            faults.raise_if_any()
+            refuse(("hold",), f"{text}leave it out, or give catheter.bore as a length")
         return drive
 
     @field_validator("tip", mode="after")
@@ -209,10 +207,8 @@ class Scenario(Section):
     def _free_to_be_driven(cls, tip: TipSpec, info: ValidationInfo) -> TipSpec:
         drive = info.data.get("drive")
         if drive is not None and drive.kind == "tip_speed" and tip.hold != "free" and tip.slides != "along":
-            faults = Faults()
             text = f"a tip that is {tip.hold} here cannot have the speed that a drive of kind tip_speed wants; "
-            faults.add(("hold",), f"{text}let it be free or slide along, or take a drive of kind speed or force")
-            faults.raise_if_any()
+            refuse(("hold",), f"{text}let it be free or slide along, or take a drive of kind speed or force")
         return tip
 
     @field_validator("supports", mode="before")

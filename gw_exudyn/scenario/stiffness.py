@@ -13,8 +13,10 @@ from typing import Annotated, Any
 
 from pydantic import Field, TypeAdapter, model_validator
 
-from gw_exudyn.scenario.fields import Faults, Kind, Quantity, Row, Section, Table, wrong
+from gw_exudyn.scenario.faults import Faults, wrong
+from gw_exudyn.scenario.fields import Kind, Quantity, Row, Table
 from gw_exudyn.scenario.kinds import ARC_LENGTH, BENDING_STIFFNESS, CORE_DIAMETER, MODULUS
+from gw_exudyn.scenario.section import Section
 from gw_exudyn.scenario.units import format_quantity
 from gw_exudyn.scenario.words import did_you_mean, nearest, plural, shown
 

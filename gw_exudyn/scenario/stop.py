@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Self
 
 from pydantic import Field, model_validator
 
-from gw_exudyn.scenario.fields import Faults, Flag, Section, Text, wrong
+from gw_exudyn.scenario.faults import refuse, wrong
+from gw_exudyn.scenario.fields import Flag, Text
 from gw_exudyn.scenario.kinds import FORCE_LIMIT, NEARNESS, POINT_OR_NONE, STALL_TRAVEL
-from gw_exudyn.scenario.regions import Lumen
+from gw_exudyn.scenario.section import Section
+from gw_exudyn.scenario.vessels.regions import Lumen
 from gw_exudyn.scenario.words import did_you_mean, shown
 
 if TYPE_CHECKING:
@@ -80,9 +82,7 @@ def check_target(target: TargetSpec | None, vessel: Lumen) -> None:
         allowed = f"{did_you_mean(target.branch, names)}branches: {', '.join(names)}"
     else:
         allowed = "a vessel of this kind has none by name; give target: {at: [20 mm, 40 mm], within: 2 mm}"
-    faults = Faults()
-    faults.add(("target", "branch"), f"there is no branch {shown(target.branch)}; {allowed}")
-    faults.raise_if_any()
+    refuse(("target", "branch"), f"there is no branch {shown(target.branch)}; {allowed}")
 
 
 class StopSpec(Section):

@@ -7,7 +7,8 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, ValidationInfo, WithJsonSchema, field_validator
 
 from gw_exudyn.scenario.catalogue import CatalogueWire, catalogue_names, load_catalogue
-from gw_exudyn.scenario.fields import Choice, Number, Section, Text, Whole, wrong
+from gw_exudyn.scenario.faults import wrong
+from gw_exudyn.scenario.fields import Choice, Number, Text, Whole
 from gw_exudyn.scenario.friction import FrictionStretch, check_stretches
 from gw_exudyn.scenario.kinds import (
     BENDING_STIFFNESS,
@@ -21,6 +22,7 @@ from gw_exudyn.scenario.kinds import (
     WIRE_DIAMETER,
     WIRE_LENGTH,
 )
+from gw_exudyn.scenario.section import Section
 from gw_exudyn.scenario.stiffness import (
     StiffnessPiece,
     clipped,

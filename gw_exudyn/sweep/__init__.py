@@ -1,8 +1,8 @@
 """Sweeps: a scenario over a grid, a list or a sample of parameters, in parallel.
 
-The way of the data: `study` (the file, checked) -> `design` (the points) -> `engine` (dask hands points to workers)
--> `worker` -> `point_process` (a child that runs one point after the other) -> `folder` (points on disk) -> `table`,
-`dataset`, `figures`, `sensitivity`. Names are loaded when they are first used.
+The way of the data: `study_loading` (the file, checked) -> `study` (its points, by `design`) -> `run` (dask's `pool`
+hands points to workers) -> `worker` -> `point_process` (a child that runs one point after the other) -> `folder`
+(points on disk) -> `table`, `dataset`, `figures`, `sensitivity`. Names are loaded when they are first used.
 """
 
 from __future__ import annotations
@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from gw_exudyn.sweep.run import Options, Summary, run_sweep
-    from gw_exudyn.sweep.study import Study, load_study
+    from gw_exudyn.sweep.study import Study
+    from gw_exudyn.sweep.study_loading import load_study
 
-_HOME = {"Options": "run", "Study": "study", "Summary": "run", "load_study": "study", "run_sweep": "run"}
+_HOME = {"Options": "run", "Study": "study", "Summary": "run", "load_study": "study_loading", "run_sweep": "run"}
 
 __all__ = ["Options", "Study", "Summary", "load_study", "run_sweep"]
 

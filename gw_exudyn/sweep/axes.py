@@ -12,7 +12,8 @@ from pydantic_core import PydanticCustomError
 from gw_exudyn.errors import UnitError
 from gw_exudyn.result import Floats
 from gw_exudyn.scenario.catalogue import catalogue_names
-from gw_exudyn.scenario.fields import Faults, as_float, is_number, wrong
+from gw_exudyn.scenario.faults import Faults, wrong
+from gw_exudyn.scenario.fields import as_float, is_number
 from gw_exudyn.scenario.units import parse_quantity
 from gw_exudyn.scenario.words import did_you_mean, shown
 from gw_exudyn.sweep.distributions import FORMS, Distribution, describe, is_pure

@@ -12,7 +12,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from gw_exudyn.errors import Problem, ScenarioError, UnitError
-from gw_exudyn.scenario.fields import Faults
+from gw_exudyn.scenario.faults import Faults
 from gw_exudyn.scenario.units import parse_number, parse_unit
 from gw_exudyn.scenario.words import shown
 from gw_exudyn.scenario.yaml_source import Place, parse_value, read_text

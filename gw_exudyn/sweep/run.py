@@ -15,7 +15,8 @@ from gw_exudyn.sweep.folder import POINTS, SweepFolder, read_point
 from gw_exudyn.sweep.identity import Maker, decisive, this_maker
 from gw_exudyn.sweep.pool import Pool, pool
 from gw_exudyn.sweep.runner import SIMULATION, Outcome, Task
-from gw_exudyn.sweep.study import ProblemList, Study
+from gw_exudyn.sweep.study import Study
+from gw_exudyn.sweep.study_problems import ProblemList
 
 _FAILURES_TOLD = 1000
 """Failed points that a summary names; sweep.csv has them all."""

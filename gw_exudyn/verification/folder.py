@@ -14,6 +14,7 @@ from gw_exudyn.verification.running import Outcome
 from gw_exudyn.verification.table import as_csv, as_markdown
 
 TABLE, TEXT, VERSIONS, FIGURES = "evidence.csv", "README.md", "versions.json", "figures"
+_FURTHER = ("scipy", "shapely", "matplotlib", "mujoco")  # beside what takes part in a run
 
 
 def write(outcomes: Sequence[Outcome], folder: Path, command: str) -> list[Path]:
@@ -26,7 +27,7 @@ def write(outcomes: Sequence[Outcome], folder: Path, command: str) -> list[Path]
     files = {folder / FIGURES / f"{chart.name}.png": png(chart) for chart in charts}
     files[folder / TABLE] = as_csv(outcomes).encode()
     files[folder / TEXT] = as_markdown(outcomes, command).encode()
-    files[folder / VERSIONS] = to_text({"command": command, "versions": versions()}).encode()
+    files[folder / VERSIONS] = to_text({"command": command, "versions": software_versions(*_FURTHER)}).encode()
     try:
         known = _figures_of_before(folder)
         for path, content in files.items():
@@ -51,16 +52,3 @@ def _figures_of_before(folder: Path) -> set[Path]:
         return set()
     names = [line.rpartition(f"({FIGURES}/")[2].rstrip(")") for line in text.splitlines() if line.startswith("![")]
     return {folder / FIGURES / name for name in names if "/" not in name and "\\" not in name}
-
-
-def versions() -> dict[str, str]:
-    """Versions of what takes part, beyond those of a run."""
-    from importlib.metadata import PackageNotFoundError, version
-
-    found = software_versions()
-    for package in ("scipy", "shapely", "matplotlib", "mujoco"):
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            found[package] = "not installed"
-    return found

@@ -14,7 +14,7 @@ from synthetic import StandInWire, made_up_result
 from gw_exudyn.errors import UsageError
 from gw_exudyn.report import MOST_RUNS, report_page
 from gw_exudyn.report.pack import packed_run
-from gw_exudyn.scenario.branches import BranchesVessel
+from gw_exudyn.scenario.vessels.branches import BranchesVessel
 
 
 @pytest.fixture(scope="module")

@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 from gw_exudyn.sweep.run import Options, run_sweep
-from gw_exudyn.sweep.study import load_study
+from gw_exudyn.sweep.study_loading import load_study
 
 OPTIONS = Options(jobs=2, figures=False, runner="odd_runners:SlowRunner")
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from gw_exudyn.quantities import CONTACT_FIELDS, JOINT_FIELDS, NODE_FIELDS, SCALARS
 from gw_exudyn.result import Result, SnapEvent, Status, StatusReport
-from gw_exudyn.scenario.regions import Lumen
 from gw_exudyn.scenario.stop import StopSpec
+from gw_exudyn.scenario.vessels.regions import Lumen
 
 FROM_TIP = 0.15 * (1 - np.arange(11) / 10)
 LEAD, RADIUS, LIMB, HALF_WIDTH = 0.030, 0.012, 0.060, 0.003

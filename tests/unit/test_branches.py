@@ -17,7 +17,7 @@ from synthetic import made_up_result
 from gw_exudyn.model.outline import Outline, build_outline
 from gw_exudyn.model.walls import Tube, build_walls
 from gw_exudyn.scenario import load_scenario, scenario_from_dict
-from gw_exudyn.scenario.branch_course import FACET_TOLERANCE
+from gw_exudyn.scenario.vessels.branch_course import FACET_TOLERANCE
 from gw_exudyn.scenario.yaml_source import parse_yaml
 from gw_exudyn.storage import read_run, write_run
 

@@ -9,8 +9,8 @@ from synthetic import FROM_TIP, StandInScenario, made_up_result, sample
 from gw_exudyn.metrics import LEAST_WORK, metrics
 from gw_exudyn.quantities import CONTACT_FIELDS
 from gw_exudyn.result import Result, SnapEvent, Status, StatusReport
-from gw_exudyn.scenario.branches import BranchesVessel
 from gw_exudyn.scenario.stop import StopSpec
+from gw_exudyn.scenario.vessels.branches import BranchesVessel
 from gw_exudyn.trust import ENERGY_FLOOR
 
 

@@ -31,7 +31,7 @@ from gw_exudyn.plots.style import new_figure
 from gw_exudyn.plots.tip_path import _round_step
 from gw_exudyn.quantities import CONTACT_FIELDS
 from gw_exudyn.result import Result, Status, StatusReport
-from gw_exudyn.scenario.branches import BranchesVessel
+from gw_exudyn.scenario.vessels.branches import BranchesVessel
 
 
 @pytest.fixture(scope="module")

@@ -14,9 +14,9 @@ from model_cases import scenario
 from gw_exudyn.errors import ScenarioError
 from gw_exudyn.model.outline import build_outline
 from gw_exudyn.scenario import scenario_from_dict
-from gw_exudyn.scenario.centreline import MOST_OUT_OF_PLANE
-from gw_exudyn.scenario.outline_files import read_any_outline
-from gw_exudyn.scenario.svg import CURVE_TOLERANCE
+from gw_exudyn.scenario.vessels.centreline import MOST_OUT_OF_PLANE
+from gw_exudyn.scenario.vessels.outline_files import read_any_outline
+from gw_exudyn.scenario.vessels.svg import CURVE_TOLERANCE
 
 MM = 1e-3
 CORNER = [(0, 0), (32, 0), (32, 60), (28, 60), (28, 4), (0, 4)]

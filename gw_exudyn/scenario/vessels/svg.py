@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gw_exudyn.errors import ScenarioError
-from gw_exudyn.scenario.fields import wrong
-from gw_exudyn.scenario.outline import LARGEST_FILE, Outline
+from gw_exudyn.scenario.faults import wrong
+from gw_exudyn.scenario.vessels.outline import LARGEST_FILE, Outline
 from gw_exudyn.scenario.words import path_text, plural, shown
 from gw_exudyn.scenario.yaml_source import read_text
 

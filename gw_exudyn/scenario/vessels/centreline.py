@@ -10,10 +10,12 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, PrivateAttr, ValidationInfo, field_validator, model_validator
 
 from gw_exudyn.errors import UnitError
-from gw_exudyn.scenario.branches import BranchesVessel, BranchSpec, united
-from gw_exudyn.scenario.fields import Choice, Faults, Section, Table, Text, wrong
+from gw_exudyn.scenario.faults import Faults, wrong
+from gw_exudyn.scenario.fields import Choice, Table, Text
 from gw_exudyn.scenario.kinds import FILLET
+from gw_exudyn.scenario.section import Section
 from gw_exudyn.scenario.units import in_si, parse_number
+from gw_exudyn.scenario.vessels.branches import BranchesVessel, BranchSpec, united
 from gw_exudyn.scenario.words import shown
 
 MOST_OUT_OF_PLANE = 0.5
@@ -99,8 +101,8 @@ class CentrelineForm(Section):
 
 def read_centrelines(path: Path) -> list[Line]:
     """The centre lines in a CSV file: one, or one for each name in the column branch. Raises what `wrong` makes."""
-    from gw_exudyn.scenario.outline import LARGEST_FILE, csv_rows, header_unit
-    from gw_exudyn.scenario.outline_files import text_of
+    from gw_exudyn.scenario.vessels.outline import LARGEST_FILE, csv_rows, header_unit
+    from gw_exudyn.scenario.vessels.outline_files import text_of
 
     file = str(path)
     rows = csv_rows(text_of(path, LARGEST_FILE), file)
@@ -196,7 +198,7 @@ def _spec(line: Line, rows: Any, fillet: float | None) -> BranchSpec:
     """A branch along a line, with no more stations than the facets' tolerance asks for."""
     import numpy as np
 
-    from gw_exudyn.scenario.branch_course import FACET_TOLERANCE
+    from gw_exudyn.scenario.vessels.branch_course import FACET_TOLERANCE
 
     rows = rows[np.concatenate([[True], np.hypot(*np.diff(rows[:, :2], axis=0).T) > 1e-9])]
     kept = rows[_needed(rows, FACET_TOLERANCE * 2 * rows[:, 2].min())]

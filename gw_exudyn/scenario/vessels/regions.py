@@ -6,7 +6,7 @@ import functools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from gw_exudyn.scenario.fields import Section
+from gw_exudyn.scenario.section import Section
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

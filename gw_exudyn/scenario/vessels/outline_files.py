@@ -7,10 +7,11 @@ from pathlib import Path
 from typing import Any
 
 from gw_exudyn.errors import ScenarioError, UnitError
-from gw_exudyn.scenario.fields import is_number, wrong
-from gw_exudyn.scenario.outline import LARGEST_FILE, Outline, closed, read_outline
-from gw_exudyn.scenario.svg import read_svg
+from gw_exudyn.scenario.faults import wrong
+from gw_exudyn.scenario.fields import is_number
 from gw_exudyn.scenario.units import Unit, parse_unit
+from gw_exudyn.scenario.vessels.outline import LARGEST_FILE, Outline, closed, read_outline
+from gw_exudyn.scenario.vessels.svg import read_svg
 from gw_exudyn.scenario.words import path_text, shown
 from gw_exudyn.scenario.yaml_source import read_text
 

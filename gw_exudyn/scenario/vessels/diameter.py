@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from gw_exudyn.scenario.fields import Kind, Quantity, Row, Table, wrong
+from gw_exudyn.scenario.faults import wrong
+from gw_exudyn.scenario.fields import Kind, Quantity, Row, Table
 from gw_exudyn.scenario.kinds import BRANCH_PLACE, VESSEL_DIAMETER
 
 Diameters = float | tuple[float, float] | tuple[tuple[float, float], ...]

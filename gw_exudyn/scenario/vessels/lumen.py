@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from gw_exudyn.scenario.branch_course import Course, arc_facets
+from gw_exudyn.scenario.vessels.branch_course import Course, arc_facets
 
 if TYPE_CHECKING:
     import shapely

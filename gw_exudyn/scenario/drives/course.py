@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from gw_exudyn.scenario.fields import Faults, wrong
+from gw_exudyn.scenario.faults import Faults, wrong
 from gw_exudyn.scenario.units import format_quantity
 
 Rows = Sequence[tuple[float, float]]

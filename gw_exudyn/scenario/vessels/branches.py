@@ -10,15 +10,17 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple,
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from gw_exudyn.scenario.diameter import DIAMETER, Diameters
-from gw_exudyn.scenario.fields import Choice, Faults, Number, Section, Table, Text, wrong
+from gw_exudyn.scenario.faults import Faults, wrong
+from gw_exudyn.scenario.fields import Choice, Number, Table, Text
 from gw_exudyn.scenario.kinds import BEND_RADIUS, BRANCH_ANGLE, BRANCH_LENGTH, BRANCH_PLACE, FILLET, POINT
-from gw_exudyn.scenario.regions import Lumen, Region
+from gw_exudyn.scenario.section import Section
+from gw_exudyn.scenario.vessels.diameter import DIAMETER, Diameters
+from gw_exudyn.scenario.vessels.regions import Lumen, Region
 from gw_exudyn.scenario.words import did_you_mean, shown
 
 if TYPE_CHECKING:
-    from gw_exudyn.scenario.branch_course import Course
-    from gw_exudyn.scenario.lumen import Lumen as UnitedLumen
+    from gw_exudyn.scenario.vessels.branch_course import Course
+    from gw_exudyn.scenario.vessels.lumen import Lumen as UnitedLumen
 
 Points = tuple[tuple[float, float], ...]
 
@@ -203,8 +205,8 @@ def _check_tree(branches: Sequence[BranchSpec], faults: Faults) -> None:
 @functools.lru_cache(maxsize=32)
 def united(branches: tuple[BranchSpec, ...]) -> UnitedLumen | Faulty:
     """The lumen of the branches, or what is wrong with them."""
-    from gw_exudyn.scenario.branch_course import CourseError
-    from gw_exudyn.scenario.lumen import Branch, unite
+    from gw_exudyn.scenario.vessels.branch_course import CourseError
+    from gw_exudyn.scenario.vessels.lumen import Branch, unite
 
     faults: Faulty = []
     courses = _courses(branches, faults)
@@ -251,7 +253,7 @@ def _fillet(spec: BranchSpec, by_name: dict[str, BranchSpec]) -> float:
 
 def _courses(branches: Sequence[BranchSpec], faults: Faulty) -> dict[str, Course]:
     """Every branch's course, parents first; what is wrong goes to `faults`."""
-    from gw_exudyn.scenario.branch_course import CourseError, make_course
+    from gw_exudyn.scenario.vessels.branch_course import CourseError, make_course
 
     courses: dict[str, Course] = {}
     left = list(enumerate(branches))
@@ -271,7 +273,7 @@ def _courses(branches: Sequence[BranchSpec], faults: Faulty) -> dict[str, Course
 
 def _ray(spec: BranchSpec, parent: Course) -> Points:
     """Both ends of a branch that leaves its parent."""
-    from gw_exudyn.scenario.branch_course import CourseError
+    from gw_exudyn.scenario.vessels.branch_course import CourseError
 
     at, angle, length = spec.at or 0.0, spec.angle or 0.0, spec.length or 0.0
     if at > parent.length + _AT_END:
@@ -287,7 +289,7 @@ def _ray(spec: BranchSpec, parent: Course) -> Points:
 
 
 def _table(diameter: Diameters) -> Any:
-    from gw_exudyn.scenario.branch_course import DiameterTable
+    from gw_exudyn.scenario.vessels.branch_course import DiameterTable
 
     if not isinstance(diameter, tuple):
         return DiameterTable(((0.0, diameter),), relative=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import re
 from collections.abc import Callable, Sequence
@@ -11,7 +10,8 @@ from fractions import Fraction
 from pathlib import Path
 
 from gw_exudyn.errors import ScenarioError, UnitError
-from gw_exudyn.scenario.fields import Faults, wrong
+from gw_exudyn.scenario.csv_lines import csv_cells, data_lines
+from gw_exudyn.scenario.faults import Faults, wrong
 from gw_exudyn.scenario.units import Unit, describe, format_quantity, in_si, parse_number, parse_unit, units_that_fit
 from gw_exudyn.scenario.words import path_text, shown
 from gw_exudyn.scenario.yaml_source import read_text
@@ -83,13 +83,12 @@ def read_outline(path: Path) -> Outline:
 def csv_rows(text: str, file: str) -> list[tuple[int, list[str]]]:
     """Line number and cells of every row that is not empty and no comment."""
     rows = []
-    for number, line in enumerate(text.splitlines(), 1):
-        if line.strip() and not line.lstrip().startswith("#"):
-            _check_separator(line, file, number)
-            try:
-                rows.append((number, next(csv.reader([line]))))
-            except csv.Error as error:
-                raise wrong(f"is no CSV row: {error}", file=file, line=number) from None
+    for number, line in data_lines(text):
+        _check_separator(line, file, number)
+        try:
+            rows.append((number, csv_cells(line)))
+        except ValueError as error:
+            raise wrong(str(error), file=file, line=number) from None
     return rows
 
 

@@ -1,51 +1,38 @@
-"""The drive of a scenario: what moves the proximal end. Every form of a prescribed speed becomes one table."""
+"""The drive that prescribes the speed of the proximal end: one speed, phases, or a table."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from gw_exudyn.scenario.course import check_table
-from gw_exudyn.scenario.fields import KIND_TAG, Choice, Faults, Form, Section, wrong
-from gw_exudyn.scenario.hold import Hold, Start
+from gw_exudyn.scenario.drives.base import CourseDrive, Hold, Start
+from gw_exudyn.scenario.drives.course import check_table
+from gw_exudyn.scenario.faults import Faults, wrong
 from gw_exudyn.scenario.kinds import DURATION, RAMP, SPEED, SPEED_OR_NONE, SPEED_TABLE, TRAVEL
-from gw_exudyn.scenario.other_drives import ForceDrive, ForceForm, TipSpeedDrive, TipSpeedForm
+from gw_exudyn.scenario.section import Section
 from gw_exudyn.scenario.units import format_quantity
-from gw_exudyn.scenario.words import plural, shown
+from gw_exudyn.scenario.words import plural
 
-DRIVE_KINDS = Choice(("speed", "force", "tip_speed"))
 LONGEST = 1e5
 """s, of a whole drive."""
 
 _MOST_PHASES = 10_000
 
 
-class SpeedDrive(Section):
-    """Prescribed speed of the proximal end along the catheter's axis, piecewise linear in time.
+class SpeedDrive(CourseDrive):
+    """Prescribed speed of the proximal end along the catheter's axis.
 
-    time : s, begins at 0, never falls; two equal times make a step. speed : m/s, as many; positive pushes in. The
-        drive ends at time[-1].
-    start : m, length inserted at the start. hold : of the proximal end: `clamped`, `pinned` (it may turn), `axial` (it
-        may also move square to the axis).
+    speed : m/s, one for each time; positive pushes in.
     """
 
     kind: Literal["speed"] = "speed"
-    time: tuple[float, ...]
     speed: tuple[float, ...]
-    start: float = 0.0
-    hold: str = "clamped"
-
-    @property
-    def duration(self) -> float:
-        """End of the drive, s."""
-        return self.time[-1]
 
     def to_plain(self) -> dict[str, Any]:
         """The drive as a file could hold it: its table."""
-        table = [list(row) for row in zip(self.time, self.speed, strict=True)]
-        return {"kind": self.kind, "start": self.start, "hold": self.hold, "table": table}
+        return self._plain(self.kind, self.speed)
 
 
 class PhaseForm(Section):
@@ -194,38 +181,3 @@ def _tidy(rows: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
             continue
         kept.append(row)
     return kept
-
-
-def _tag(drive: Any) -> str:
-    kind = drive.get("kind") if isinstance(drive, dict) else getattr(drive, "kind", None)
-    return f"{KIND_TAG}{kind}"
-
-
-AnyForm = Annotated[
-    Annotated[DriveForm, Tag(f"{KIND_TAG}speed")]
-    | Annotated[ForceForm, Tag(f"{KIND_TAG}force")]
-    | Annotated[TipSpeedForm, Tag(f"{KIND_TAG}tip_speed")],
-    Discriminator(_tag),
-]
-"""What a file may hold."""
-
-
-def _check_drive(drive: Any) -> None:
-    """The kind first: it says what the other keys mean."""
-    allowed = ", ".join(DRIVE_KINDS.words)
-    if not isinstance(drive, dict):
-        found = "is empty; a drive is needed" if drive is None else f"{shown(drive)} stands where a drive is needed"
-        raise wrong(f"{found}: lines of 'key: value', the first kind: {allowed.replace(', ', ' | ')}")
-    faults = Faults()
-    if "kind" not in drive:
-        faults.add(("kind",), wrong(f"is missing: what the drive is; allowed: {allowed}", missing=True))
-    else:
-        faults.read(("kind",), DRIVE_KINDS.read, drive["kind"])
-    faults.raise_if_any()
-
-
-Drive = Annotated[
-    SpeedDrive | ForceDrive | TipSpeedDrive,
-    Form(AnyForm, (SpeedDrive, ForceDrive, TipSpeedDrive), check=_check_drive),
-]
-"""The drive as the program sees it, read from any of the forms."""

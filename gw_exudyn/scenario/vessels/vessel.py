@@ -8,9 +8,8 @@ from typing import Annotated, Any, ClassVar, Literal, NoReturn, Self
 
 from pydantic import Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
 
-from gw_exudyn.scenario.branches import BranchesVessel
-from gw_exudyn.scenario.centreline import CentrelineForm
-from gw_exudyn.scenario.fields import KIND_TAG, Choice, Faults, Form, Section, Table, Text, Whole, wrong
+from gw_exudyn.scenario.faults import Faults, wrong
+from gw_exudyn.scenario.fields import Choice, Table, Text, Whole
 from gw_exudyn.scenario.kinds import (
     ANGLE,
     ARC_RADIUS,
@@ -20,7 +19,10 @@ from gw_exudyn.scenario.kinds import (
     VESSEL_DIAMETER,
     VESSEL_LENGTH,
 )
-from gw_exudyn.scenario.outline import (
+from gw_exudyn.scenario.section import KIND_TAG, Form, Section
+from gw_exudyn.scenario.vessels.branches import BranchesVessel
+from gw_exudyn.scenario.vessels.centreline import CentrelineForm
+from gw_exudyn.scenario.vessels.outline import (
     MOST_POINTS,
     Outline,
     Points,
@@ -28,7 +30,7 @@ from gw_exudyn.scenario.outline import (
     closed,
     counter_clockwise,
 )
-from gw_exudyn.scenario.regions import Lumen, Region
+from gw_exudyn.scenario.vessels.regions import Lumen, Region
 from gw_exudyn.scenario.words import shown
 
 VESSEL_KINDS = Choice(("straight", "arc", "branches", "centreline", "polygon", "file", "none"))
@@ -194,7 +196,7 @@ class PolygonForm(Section):
     @field_validator("file", mode="after")
     @classmethod
     def _read(cls, name: Any, info: ValidationInfo) -> Outline | None:
-        from gw_exudyn.scenario.outline_files import read_any_outline
+        from gw_exudyn.scenario.vessels.outline_files import read_any_outline
 
         if name is None:
             return None

@@ -1,0 +1,1 @@
+"""The drives: what moves the wire's proximal end."""
