@@ -1,9 +1,9 @@
 """Calibration: known values recovered from noisy synthetic data, and how often the stated intervals hold them.
 
-`python benchmarks/calibration.py [--seeds 20] [--jobs 2] [--scene arc90]`. A small wire round a bend; tip path, push
-force and force on the vessel, 15 a second, with gaps and Gaussian noise. The truth is drawn anew for each seed, so that
-no derivative step and no start value can suit it by chance. All fits share their simulations. The data is made at the
-fit's own fineness: what is measured here is the statistics, not the model.
+`python benchmarks/calibration.py [--seeds 20] [--jobs 2] [--scene arc90] [--starts 1]`. A small wire round a bend; tip
+path, push force and force on the vessel, 15 a second, with gaps and Gaussian noise. The truth is drawn anew for each
+seed, so that no derivative step and no start value can suit it by chance. All fits share their simulations. The data is
+made at the fit's own fineness: what is measured here is the statistics, not the model.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import argparse
 import math
 import os
 import tempfile
+from functools import reduce
 from pathlib import Path
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -41,6 +42,7 @@ FILE = f"""
 base: BASE
 set: {{{", ".join(f"{path}: {value}" for path, value in SET.items())}}}
 measured: [camera.csv, cell.csv]
+starts: STARTS
 noise: {{tip: {TIP}, push_force: NOISE, wall_force_x: NOISE, wall_force_y: NOISE}}
 fit:
   contact.friction_coefficient: {{start: 0.2, low: 0.05, high: 0.5}}
@@ -68,13 +70,15 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--scene", choices=tuple(SCENES), default="arc90")
+    parser.add_argument("--starts", type=int, default=1)
     chosen = parser.parse_args()
     base, force_noise = chosen.scene, SCENES[chosen.scene] * 1e-3
     print(machine())
     held, pulls, rows = dict.fromkeys(TRUTH, 0), {path: [] for path in TRUTH}, []
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        (folder / "fit.yaml").write_text(FILE.replace("BASE", base).replace("NOISE", repr(force_noise)))
+        given = {"BASE": base, "NOISE": repr(force_noise), "STARTS": str(chosen.starts)}
+        (folder / "fit.yaml").write_text(reduce(lambda text, pair: text.replace(*pair), given.items(), FILE))
         with SweepFolder(folder / "simulations") as place, simulations(place, Options(jobs=chosen.jobs)) as engine:
             for seed in range(chosen.seeds):
                 random = np.random.default_rng(seed)

@@ -1,8 +1,4 @@
-"""The least-squares fit: scipy's trust-region reflective method on residuals that simulations give.
-
-Parameters are relative to their ranges, 0 at the low end and 1 at the high end. Simulations are smooth only from one
-contact event to the next, so derivatives are central differences over a step that such events do not decide on.
-"""
+"""The least-squares fit: scipy's trust-region reflective method from one start or several, and a look round its end."""
 
 from __future__ import annotations
 
@@ -12,20 +8,17 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from gw_exudyn.calibration.form import Calibration
+from gw_exudyn.calibration.objective import Best, Objective, Step, StuckError
 from gw_exudyn.calibration.observations import Observations
-from gw_exudyn.calibration.simulations import Simulated, Simulations
+from gw_exudyn.calibration.probing import profiles
+from gw_exudyn.calibration.simulations import Simulations
+from gw_exudyn.calibration.statistics import statistics
 from gw_exudyn.comparison import Course
-from gw_exudyn.errors import ComparisonError, Problem, ScenarioError, SolverError
+from gw_exudyn.errors import SolverError
 from gw_exudyn.result import Floats
 
-STEP = 0.01
-"""To each side for a central difference, relative to the parameter's range."""
-
-HALVINGS = 3
-"""How often the step is halved where no simulation next to a point works out."""
-
 MOST_STEPS = 40
-"""Points that the fit may try, those for derivatives apart."""
+"""Points that the fit may try from one start, those for derivatives apart."""
 
 _ENOUGH = 0.01
 """Change of chi square, by degree of freedom's own, below which the fit has come to its end: a tenth of a standard
@@ -34,27 +27,37 @@ error, as one standard error changes it by 1."""
 _STEP_TOLERANCE = 1e-4
 """The same of the relative parameters."""
 
+_BETTER = 0.1
+"""By how much chi square has to be lower beside the end for the fit to go on from there."""
+
+_LOOKS = 5
+"""How often a better point may be found so."""
+
 
 @dataclass(frozen=True, eq=False)
-class Step:
-    """A point that was tried. point : (parameters,) relative. chi_square : sum of the squared residuals, NaN where
-    the simulation failed. reason : why it failed.
+class Descent:
+    """A fit from one start. start : (p,) relative. best : None where the start gives no simulation. converged,
+    message : how it ended.
     """
 
-    point: Floats
-    chi_square: float
-    reason: str
+    start: Floats
+    best: Best | None
+    converged: bool
+    message: str
+
+    @property
+    def chi_square(self) -> float:
+        """At its end; infinite where there is none."""
+        return np.inf if self.best is None else self.best.chi_square
 
 
 @dataclass(eq=False)
 class Fit:
     """How the fit ended.
 
-    point : (p,) relative. residuals : (k,) in units of the noise. jacobian : (k, p) residuals by relative parameters.
-    bends : (k, p) mean of the residuals on both sides of the point less those at it: how far a simulation is from the
-    straight line that its derivative stands for; 0 where a side lacks. course : the fitted simulation. sides : per
-    parameter the courses below and above, and how far these are apart, relative. converged, message : how it ended.
-    steps : all points that were tried.
+    point : (p,) relative. residuals : (k,) in units of the noise. jacobian, bends, sides : as in `Derivatives`.
+    course : the fitted simulation. converged, message : how it ended. descents : from each start, the best of which
+    this is. steps : all points that were tried.
     """
 
     point: Floats
@@ -65,21 +68,8 @@ class Fit:
     sides: list[tuple[Course, Course, float]]
     converged: bool
     message: str
+    descents: list[Descent]
     steps: list[Step] = field(default_factory=list)
-
-
-@dataclass(frozen=True, eq=False)
-class _Derivatives:
-    """What was found at a point; as in `Fit`."""
-
-    point: Floats
-    jacobian: Floats
-    bends: Floats
-    sides: list[tuple[Course, Course, float]]
-
-
-class _StuckError(Exception):
-    """No derivative can be had where the fit stands."""
 
 
 def fitted(
@@ -90,10 +80,40 @@ def fitted(
     Raises SolverError where the start values give no simulation, ScenarioError where measured and simulated have no
     time in common, and what `simulate` raises.
     """
+    work = Objective(calibration, simulate, look)
+    first = work.begin()
+    starts = [first, *spread(calibration.starts - 1, len(first))]
+    simulate(calibration, starts)  # in parallel, before each descent asks for its own
+    descents = [_descent(work, start) for start in starts]
+    for _ in range(_LOOKS):
+        best = min(descents, key=lambda one: one.chi_square)
+        better = _better_beside(work, best) if best.converged else None
+        if better is None:
+            return _ended(work, best, descents), work.observations
+        descents.append(_descent(work, better))
+    best = min(descents, key=lambda one: one.chi_square)
+    fit = _ended(work, best, descents)
+    fit.converged, fit.message = False, f"a better point lay beside its end {_LOOKS} times: chi square is too rough"
+    return fit, work.observations
+
+
+def spread(count: int, dimensions: int) -> list[Floats]:
+    """Relative points, evenly spread over all ranges (Sobol's sequence), the same at every call."""
+    from scipy.stats.qmc import Sobol
+
+    if count < 1:
+        return []
+    sequence = Sobol(dimensions, scramble=True, seed=0)
+    return list(sequence.random_base2(max(1, (count - 1).bit_length()))[:count])
+
+
+def _descent(work: Objective, start: Floats) -> Descent:
+    """Least squares from a start."""
     from scipy.optimize import least_squares
 
-    work = _Work(calibration, simulate, look)
-    start = work.begin()
+    work.best = None
+    if not np.isfinite(work.residuals(start)).all():
+        return Descent(start, None, False, work.steps[-1].reason)
     try:
         found = least_squares(
             work.residuals,
@@ -106,8 +126,8 @@ def fitted(
             gtol=1e-8,
             max_nfev=MOST_STEPS,
         )
-    except _StuckError as stuck:
-        return work.fit(False, str(stuck)), work.observations
+    except StuckError as stuck:
+        return Descent(start, work.best, False, str(stuck))
     words = {
         0: f"no end within {MOST_STEPS} steps",
         1: "the gradient vanishes",
@@ -115,124 +135,43 @@ def fitted(
         3: "the parameters no longer change",
         4: "neither the sum of squares nor the parameters change any longer",
     }
-    return work.fit(found.status > 0, words.get(found.status, str(found.message))), work.observations
+    return Descent(start, work.best, found.status > 0, words.get(found.status, str(found.message)))
 
 
-class _Work:
-    """What scipy calls: residuals and their derivatives, and the best point so far."""
-
-    def __init__(self, calibration: Calibration, simulate: Simulations, look: Callable[[Step], None]) -> None:
-        self._calibration, self._simulate, self._look = calibration, simulate, look
-        self.observations: Observations
-        self.count = 0  # of residuals
-        self._steps: list[Step] = []
-        self._best: tuple[float, Floats, Floats, Course] | None = None
-        self._derivatives: _Derivatives | None = None
-
-    def begin(self) -> Floats:
-        """The start, once its simulation says until when there is something to compare."""
-        start = self._calibration.start()
-        (one,) = self._simulate(self._calibration, [start])
-        if one.course is None:
-            raise SolverError(f"the simulation at the start values failed: {one.reason}; take others")
-        until = max(float(course.time[-1]) for course in self._calibration.measured)
-        end = float(one.course.time[-1])
-        if not one.completed and end < until:
-            raise SolverError(
-                f"the simulation at the start values ends at {end:g} s, before what was measured ({until:g} s): "
-                f"{one.reason}; take other start values, or cut the measured files"
-            )
-        given = self._calibration
-        try:
-            self.observations = Observations(given.measured, given.noise, given.align, end)
-            self.count, free = len(self.observations.residuals(one.course)), len(start) + self.observations.taken
-            if self.count <= free:
-                raise ComparisonError(f"{self.count} measured values are too few for {free} unknowns")
-        except ComparisonError as error:
-            raise ScenarioError(Problem("measured", str(error), str(given.file))) from None
-        return start
-
-    def residuals(self, point: Floats) -> Floats:
-        """(k,) Residuals at a point; NaN where its simulation failed, which makes scipy refuse the step."""
-        (one,) = self._simulate(self._calibration, [point])
-        found = self._of(one)
-        chi_square = float(found @ found)
-        reason = "" if np.isfinite(chi_square) else one.reason
-        if np.isfinite(chi_square) and one.course is not None and (self._best is None or chi_square < self._best[0]):
-            self._best = chi_square, point.copy(), found, one.course
-        self._steps.append(Step(point.copy(), chi_square, reason))
-        self._look(self._steps[-1])
-        return found
-
-    def _of(self, one: Simulated) -> Floats:
-        return np.full(self.count, np.nan) if one.course is None else self.observations.residuals(one.course)
-
-    def jacobian(self, point: Floats) -> Floats:
-        """(k, p) Derivatives of the residuals by central differences; one-sided at a bound and beside a failure."""
-        count = len(point)
-        sides: list[tuple[Simulated, Simulated, float] | None] = [None] * count
-        step = STEP
-        for _ in range(HALVINGS + 1):
-            for i, side in self._tried(point, [i for i in range(count) if sides[i] is None], step):
-                sides[i] = side
-            step /= 2
-        lacking = [self._calibration.parameters[i].path for i in range(count) if sides[i] is None]
-        if lacking:
-            raise _StuckError(f"no simulation beside the best point works out for {', '.join(lacking)}")
-        known = [side for side in sides if side is not None]
-        columns = [(self._of(high) - self._of(low)) / apart for low, high, apart in known]
-        jacobian = np.column_stack(columns)
-        courses = [(low.course, high.course, apart) for low, high, apart in known]
-        pairs = [(low, high, apart) for low, high, apart in courses if low is not None and high is not None]
-        (here,) = self._simulate(self._calibration, [point])
-        bends = [
-            (self._of(high) + self._of(low)) / 2 - self._of(here) if here not in (low, high) else np.zeros(self.count)
-            for low, high, _ in known
-        ]
-        self._derivatives = _Derivatives(point.copy(), jacobian, np.column_stack(bends), pairs)
-        return jacobian
-
-    def _tried(
-        self, point: Floats, wanted: list[int], step: float
-    ) -> list[tuple[int, tuple[Simulated, Simulated, float]]]:
-        """The simulations on both sides of a point, for those of the wanted parameters where they work out."""
-        ends = [(max(point[i] - step, 0.0), min(point[i] + step, 1.0)) for i in wanted]
-        moved = [_moved(point, i, end) for i, pair in zip(wanted, ends, strict=True) for end in pair]
-        if not moved:
-            return []
-        here, *done = self._simulate(self._calibration, [point, *moved])
-        found = []
-        for number, (i, (low, high)) in enumerate(zip(wanted, ends, strict=True)):
-            below, above = done[2 * number : 2 * number + 2]
-            if not self._good(below):
-                below, low = here, float(point[i])
-            if not self._good(above):
-                above, high = here, float(point[i])
-            if high > low:
-                found.append((i, (below, above, high - low)))
-        return found
-
-    def _good(self, one: Simulated) -> bool:
-        return one.course is not None and self.observations.covers(one.course)
-
-    def fit(self, converged: bool, message: str) -> Fit:
-        """The best point, with what is known there. Raises SolverError where there is no derivative at all."""
-        if self._best is None:
-            raise SolverError("no simulation worked out")
-        _, point, residuals, course = self._best
-        if self._derivatives is None or not np.array_equal(self._derivatives.point, point):
-            try:
-                self.jacobian(point)
-            except _StuckError as stuck:
-                if self._derivatives is None:
-                    raise SolverError(f"{stuck}, so the fit cannot begin; take other start values") from None
-        known = self._derivatives
-        if known is None:
-            raise SolverError("no derivative can be had")
-        return Fit(point, residuals, known.jacobian, known.bends, course, known.sides, converged, message, self._steps)
+def _better_beside(work: Objective, descent: Descent) -> Floats | None:
+    """A better point on the profiles through the end of a descent, if there is one; all of them count as tried."""
+    best = descent.best
+    if best is None:
+        return None
+    try:
+        known = work.derivatives(best.point)
+    except StuckError:
+        return None
+    found = statistics(best.residuals, known.jacobian, known.bends, work.observations.taken)
+    work.best = None
+    work.tried(profiles(best.point, found))
+    beside: Best | None = work.best
+    return beside.point if beside is not None and beside.chi_square < best.chi_square - _BETTER else None
 
 
-def _moved(point: Floats, i: int, to: float) -> Floats:
-    moved = point.copy()
-    moved[i] = to
-    return moved
+def _ended(work: Objective, descent: Descent, descents: list[Descent]) -> Fit:
+    """The fit at the end of a descent. Raises SolverError where nothing is known there."""
+    best = descent.best
+    if best is None:
+        raise SolverError("no simulation worked out")
+    try:
+        known = work.derivatives(best.point)
+    except StuckError as stuck:
+        raise SolverError(f"{stuck}, so the fit cannot begin; take other start values") from None
+    return Fit(
+        best.point,
+        best.residuals,
+        known.jacobian,
+        known.bends,
+        best.course,
+        known.sides,
+        descent.converged,
+        descent.message,
+        descents,
+        work.steps,
+    )

@@ -20,7 +20,7 @@ from gw_exudyn.quantities import QUANTITIES
 from gw_exudyn.result import Floats
 from gw_exudyn.scenario import Scenario
 from gw_exudyn.scenario.faults import Faults, wrong
-from gw_exudyn.scenario.fields import Flag, Kind, Quantity, Table, Text
+from gw_exudyn.scenario.fields import Flag, Kind, Quantity, Table, Text, Whole
 from gw_exudyn.scenario.loading import name_from
 from gw_exudyn.scenario.problems import in_order, problems_of
 from gw_exudyn.scenario.section import Section
@@ -89,6 +89,9 @@ class CalibrationForm(Section):
         examples=["{contact.friction_coefficient: {start: 0.3, low: 0.05, high: 0.8}}"],
     )
     align: Annotated[bool, Flag()] = False
+    starts: Annotated[int, Whole(1, 64)] = Field(
+        default=1, description="how many fits: from the start values, and from points spread over all ranges"
+    )
 
     @field_validator("name", mode="after")
     @classmethod
@@ -138,7 +141,7 @@ class Calibration:
     """A calibration, checked.
 
     noise : standard deviation in SI by quantity (`tip` for both coordinates), without those that are left out.
-    measured : the courses as they were read. align : turn and shift measured paths.
+    measured : the courses as they were read. align : turn and shift measured paths. starts : how many fits.
     """
 
     name: str
@@ -149,6 +152,7 @@ class Calibration:
     measured_files: tuple[Path, ...]
     noise: Mapping[str, float]
     align: bool
+    starts: int
     fixed: Mapping[str, Any]
     _study: Study = field(repr=False)
 
@@ -201,8 +205,8 @@ def load_calibration(path: str | os.PathLike[str], overrides: Sequence[str] = ()
         problems += _value_problems(study, parameters)
     if problems or base is None:
         raise ScenarioError(in_order(told_once(problems)))
-    given = (name, file, form.base, tuple(parameters), tuple(measured), tuple(files), noise, form.align, fixed, study)
-    calibration = Calibration(*given)
+    lists = tuple(parameters), tuple(measured), tuple(files)
+    calibration = Calibration(name, file, form.base, *lists, noise, form.align, form.starts, fixed, study)
     _check_start(calibration)
     return calibration
 

@@ -147,6 +147,16 @@ def content_of(report: Report, command: str, further: Mapping[str, Any]) -> dict
             for channel in report.channels
         ],
         "files": {file.name: _digest(file) for file in calibration.measured_files},
+        "descents": [
+            {
+                "start": calibration.values(one.start),
+                "end": None if one.best is None else calibration.values(one.best.point),
+                "chi_square": None if one.best is None else one.best.chi_square,
+                "converged": one.converged,
+                "message": one.message,
+            }
+            for one in fit.descents
+        ],
         "steps": [
             {"values": calibration.values(step.point), "chi_square": step.chi_square, "failed": step.reason or None}
             for step in fit.steps

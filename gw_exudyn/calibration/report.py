@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from gw_exudyn.calibration.advice import Advice, advice
 from gw_exudyn.calibration.fit import Fit
 from gw_exudyn.calibration.form import TIP, Calibration, Parameter
 from gw_exudyn.calibration.observations import Channel, Observations
+from gw_exudyn.calibration.probing import widened
 from gw_exudyn.calibration.statistics import (
     FOLLOWING,
     Doubt,
@@ -23,6 +26,13 @@ from gw_exudyn.quantities import display
 
 _MISFIT = 2.0
 """Reduced chi square from which, and below whose inverse, the stated noise is told not to fit."""
+
+
+_WIDER = 1.05
+"""Factor from which it is told that an interval is wider than linear theory has it."""
+
+_ELSEWHERE = 1.0
+"""Distance in standard errors from which the ends of two starts are different places."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +70,8 @@ class Report:
 def report_of(calibration: Calibration, fit: Fit, observations: Observations) -> Report:
     """Everything that follows from a fit."""
     channels = tuple(observations.channels(fit.course))
-    found = statistics(fit.residuals, fit.jacobian, fit.bends, observations.taken)
+    linear = statistics(fit.residuals, fit.jacobian, fit.bends, observations.taken)
+    found = widened(linear, fit.point, fit.steps)
     help_by = advice(fit, observations, found, calibration.noise)
     values = calibration.values(fit.point)
     estimates = []
@@ -75,7 +86,11 @@ def report_of(calibration: Calibration, fit: Fit, observations: Observations) ->
                 tuple(_sentences(parameter, reasons, help_by[i], calibration.parameters)),
             )
         )
-    notes = tuple(_notes(fit, observations, channels, found))
+    notes = (
+        *_notes(fit, observations, channels, found),
+        *_widened(calibration, linear, found),
+        *_other_minima(calibration, fit, found),
+    )
     return Report(calibration, fit, observations, channels, found, tuple(estimates), notes)
 
 
@@ -137,3 +152,31 @@ def _notes(fit: Fit, observations: Observations, channels: Sequence[Channel], fo
     if observations.left_out:
         notes.append(f"{observations.left_out} measured rows lie outside the simulated time and were left out")
     return notes
+
+
+def _widened(calibration: Calibration, linear: Statistics, found: Statistics) -> list[str]:
+    wider = [
+        one.path
+        for one, before, now in zip(calibration.parameters, linear.half_widths, found.half_widths, strict=True)
+        if now > _WIDER * before
+    ]
+    if not wider:
+        return []
+    return [
+        f"chi square is no parabola round its end: the interval of {' and of '.join(wider)} is wider than linear "
+        "theory has it, to hold all points that fit as well"
+    ]
+
+
+def _other_minima(calibration: Calibration, fit: Fit, found: Statistics) -> list[str]:
+    """Ends of other starts that fit as well as the best and lie elsewhere."""
+    told: list[str] = []
+    for descent in fit.descents:
+        best = descent.best
+        if best is None or best.chi_square > found.chi_square + found.factor**2 * found.reduced:
+            continue
+        if (np.abs(best.point - fit.point) > _ELSEWHERE * found.standard_errors).any():
+            values = zip(calibration.parameters, calibration.values(best.point), strict=True)
+            place = ", ".join(f"{one.path} {one.text(value)}" for one, value in values)
+            told.append(f"another start ended at {place} with chi square {best.chi_square:.6g}, which is as good")
+    return told

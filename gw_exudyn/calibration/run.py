@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from gw_exudyn.calibration.fit import Step, fitted
+from gw_exudyn.calibration.fit import fitted
 from gw_exudyn.calibration.form import Calibration
+from gw_exudyn.calibration.objective import Step
 from gw_exudyn.calibration.outputs import SIMULATIONS, content_of, prepare, write_outputs
 from gw_exudyn.calibration.report import Report, report_of
 from gw_exudyn.calibration.simulations import simulations

@@ -13,8 +13,8 @@ from gw_exudyn.cli.console import put, put_json, put_table, tell
 from gw_exudyn.errors import SolverError
 
 if TYPE_CHECKING:
-    from gw_exudyn.calibration.fit import Step
     from gw_exudyn.calibration.form import Calibration
+    from gw_exudyn.calibration.objective import Step
     from gw_exudyn.calibration.run import Look, Summary
 
 CALIBRATIONS = Path("results", "calibrations")

@@ -123,6 +123,65 @@ def test_simulations_that_jump_widen_the_intervals():
     assert any(note.startswith("simulations jump") for note in rough.notes)
 
 
+def test_points_that_fit_as_well_beyond_linear_theory_widen_the_intervals():
+    def stairs(friction: float, stiffness: float) -> np.ndarray:
+        """Steep at the truth, next to flat beside it."""
+        off = friction - TRUTH[0]
+        return both(TRUTH[0] + 0.1 * off + 0.0035 * np.tanh(off / 0.003), stiffness)
+
+    found = report(calibration(stairs, start="0.28"), Made(stairs))
+    friction, tip = found.estimates
+    linear = found.statistics.factor * friction.standard_error
+    assert friction.half_width > 1.4 * linear
+    assert tip.half_width == pytest.approx(found.statistics.factor * tip.standard_error)
+    (note,) = [note for note in found.notes if note.startswith("chi square is no parabola")]
+    assert f"the interval of {FRICTION} is wider" in note
+
+
+def test_a_better_point_beside_the_end_is_taken():
+    def wavy(friction: float, stiffness: float) -> np.ndarray:
+        """Waves in the second parameter as long as a difference's step to each side, which derivatives don't see."""
+        return both(friction, stiffness) + 2e-3 * np.sin(2 * np.pi * (stiffness - TRUTH[1]) / 0.015) * np.cos(3 * TIME)
+
+    found = report(calibration(wavy, seed=3), Made(wavy))
+    first, *later = found.fit.descents
+    assert later
+    assert found.fit.converged
+    assert found.statistics.chi_square < first.chi_square - 1
+    assert abs(found.estimates[1].value - TRUTH[1]) < 0.002
+
+
+def test_several_starts_find_the_better_of_two_minima():
+    def waves(friction: float, stiffness: float) -> np.ndarray:
+        return stiffness * 0.01 * TIME + 0.02 * np.sin(20 * friction) * np.sin(TIME) + 0.02 * friction * np.cos(TIME)
+
+    given = calibration(waves, start="0.55")
+    alone = report(given, Made(waves))
+    assert abs(alone.estimates[0].value - TRUTH[0]) > 0.1
+    text = Path("fit.yaml").read_text()
+    Path("fit.yaml").write_text(f"{text}starts: 8\n")
+    several = report(load_calibration("fit.yaml"), Made(waves))
+    assert len(several.fit.descents) >= 8
+    assert several.statistics.chi_square < alone.statistics.chi_square
+    low, high = several.estimates[0].interval
+    assert low <= TRUTH[0] <= high
+
+
+def test_a_second_minimum_that_is_as_good_is_told():
+    def even(friction: float, stiffness: float) -> np.ndarray:
+        return both(abs(friction - 0.4) + 0.1, stiffness)
+
+    given = calibration(even, start="0.3")
+    text = Path("fit.yaml").read_text()
+    Path("fit.yaml").write_text(f"{text}starts: 4\n")
+    found = report(load_calibration("fit.yaml"), Made(even))
+    assert any(note.startswith("another start ended at") for note in found.notes)
+    low, high = found.estimates[0].interval
+    assert low < 0.27 < high
+    assert low < 0.53 < high
+    assert given.starts == 1
+
+
 def test_what_stands_in_for_each_other_is_named_with_the_measurement_that_helps():
     found = report(calibration(product), Made(product))
     friction, tip = found.estimates
