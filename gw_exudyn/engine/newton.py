@@ -44,8 +44,8 @@ nothing holds yet, next to nothing beside a load."""
 _SURPRISE = 0.5
 """By how much the way that a hub goes at its speed in a step may change over the step, in radii."""
 
-_HELD_ITERATIONS = 1
-"""Iterations in which the tangent keeps the stiffness of the contacts at the step's start."""
+_ROAMING = 3
+"""Iteration from which a step is given up where a segment has moved too far for it; hardly any can have before."""
 
 PIECE = 1 / 3
 """Share of the contact's reach that the drive may travel in one step: segments may move by some more."""
@@ -96,10 +96,16 @@ class Newton:
         self._system = system
         self._data = system.mbs.systemData
 
-    def install(self, start_trial: Callable[[float], tuple[float, float]], end_step: Callable[[float], None]) -> None:
+    def install(
+        self,
+        start_trial: Callable[[float], tuple[float, float]],
+        end_step: Callable[[float], None],
+        give_up: Callable[[], None],
+    ) -> None:
         """Hand the callbacks to Exudyn. start_trial(end) -> (step, s; travel of the drive in it, m); end_step(time)
-        for each accepted step."""
+        for each accepted step; give_up() ends an iteration that has not converged, and the step is cut."""
         mbs = self._system.mbs
+        self._give_up = give_up
 
         def before_step(_: Any, time: float) -> bool:
             self._step, self._travel = start_trial(time)
@@ -147,24 +153,26 @@ class Newton:
         self.iterations += iteration > 0
         data = self._data
         q, q_t = data.GetODE2Coordinates(), data.GetODE2Coordinates_t()
-        predicted = iteration < _HELD_ITERATIONS
         if iteration == 0:
             data.SetAECoordinates(self._multipliers)
-            q = self._guessed(q, q_t, predicted)
+            q = self._guessed(q, q_t)
         else:
-            q = self._shortened(q, q_t, predicted)
+            q = self._shortened(q, q_t)
         self._last = q
         self._sum_up()
         mbs.SetObjectParameter(self._system.contact, "forceVector", self._force.reshape(-1))
+        if iteration >= _ROAMING and self._jumped():
+            # What lies beyond is mostly a snap, which the check after Newton would refuse.
+            self._give_up()
 
-    def _guessed(self, q: Floats, q_t: Floats, predicted: bool) -> Floats:
+    def _guessed(self, q: Floats, q_t: Floats) -> Floats:
         """Evaluate the first guess, Exudyn's from the last step's motion, but not rushing on after a snap."""
         self._last_move = 0.0
         change = q - self._data.GetODE2Coordinates(exudyn().ConfigurationType.StartOfStep)
         most = _GUESS * self._radius + abs(self._travel)
         share = min(1.0, most / max(_largest_move(change), 1e-30))
         place, rate = self._go_back(q, q_t, (share - 1) * change)
-        self._evaluate(place, rate, predicted)
+        self._evaluate(place, rate, guessed=True)
         return place
 
     def _go_back(self, q: Floats, q_t: Floats, back: Floats) -> tuple[Floats, Floats]:
@@ -178,16 +186,16 @@ class Newton:
             data.SetODE2Coordinates_tt(data.GetODE2Coordinates_tt() + acceleration_factor(self._step) * back)
         return place, rate
 
-    def _evaluate(self, q: Floats, q_t: Floats, predicted: bool) -> None:
+    def _evaluate(self, q: Floats, q_t: Floats, *, guessed: bool) -> None:
         self._move(q, q_t)
-        self._contact.evaluate(1.0, velocity_factor(self._step), predicted=predicted)
+        self._contact.evaluate(1.0, velocity_factor(self._step), predicted=guessed, followed=not guessed)
         self._loads.evaluate(self._contact.motion)
 
     def _move(self, q: Floats, q_t: Floats) -> None:
         places = np.asarray(q)[HUB_COORDINATES:].reshape(-1, 3) + self._system.reference
         self._contact.motion.set(places, np.asarray(q_t)[HUB_COORDINATES:].reshape(-1, 3))
 
-    def _shortened(self, q: Floats, q_t: Floats, predicted: bool) -> Floats:
+    def _shortened(self, q: Floats, q_t: Floats) -> Floats:
         """Evaluate Newton's new place, or one nearer to the last: no segment moves too far, and a contact that was
         open no more than closes, so that the next tangent knows of it. Place, rate and acceleration are shortened
         together."""
@@ -195,9 +203,10 @@ class Newton:
         self._last_move = _largest_move(change)
         share = min(1.0, _LIMIT * self._radius / max(self._last_move, 1e-30))
         self._before.take(self._contact.motion)
+        self._contact.step_on()
         for _ in range(2):
             back = (share - 1) * change
-            self._evaluate(q + back, q_t + velocity_factor(self._step) * back, predicted)
+            self._evaluate(q + back, q_t + velocity_factor(self._step) * back, guessed=False)
             free = self._contact.share_to_touch(self._before)
             if free >= 1:
                 break

@@ -65,7 +65,7 @@ class Stepper:
         self._newton.attach(self.system, spec.step)
         self._settings = simulation_settings(spec.step, spec.minimum_step, spec.tolerance, spec.absolute_tolerance)
         self._solver = exudyn().MainSolverImplicitSecondOrder()
-        self._newton.install(self._start_trial, self._end_step)
+        self._newton.install(self._start_trial, self._end_step, self._give_up)
         if not self._solver.InitializeSolver(self.system.mbs, self._settings):
             raise SolverError("Exudyn refused to initialise its solver for this model")
         self._time = 0.0
@@ -208,6 +208,10 @@ class Stepper:
         travel, m, to expect."""
         self.system.hub.aim(self.system.mbs, self.drive, end)
         return end - self._time, self.system.hub.travel(self.drive, self._hub, self._time, end)
+
+    def _give_up(self) -> None:
+        """Newton's iteration leads nowhere: Exudyn cuts the step."""
+        self._solver.conv.stopNewton = True
 
     def _end_step(self, time: float) -> None:
         """A step was accepted: take over its forces, count its energies, find the pairs of the next."""

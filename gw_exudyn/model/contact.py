@@ -129,14 +129,21 @@ class Contact:
         here, there = _known(self._corner_keys, memory.corner_keys)
         corners.start[here], corners.held[here] = memory.corner_pair_slip[there], memory.corner_held[there]
 
-    def evaluate(self, position: float = 1.0, velocity: float = 0.0, *, predicted: bool = False) -> None:
+    def evaluate(
+        self, position: float = 1.0, velocity: float = 0.0, *, predicted: bool = False, followed: bool = False
+    ) -> None:
         """Forces and tangent at the present place; tangent = position * d/dq + velocity * d/dq_t.
 
-        predicted : the place is the first guess of a step (see contact_law in contact.c).
+        predicted : the place is the first guess of a step (see contact_law in contact.c). followed : Newton's step led
+        here from where `step_on` was called (see taken_at there).
         """
         self._summary = None
-        self.motion.struct.predicted = int(predicted)
+        self.motion.struct.predicted, self.motion.struct.followed = int(predicted), int(followed)
         self._kernel.evaluate(self.motion, self.nodes, self.corners, position, velocity)
+
+    def step_on(self) -> None:
+        """Newton steps on from the place of the last `evaluate`: the next ones may look back on its forces."""
+        self._kernel.step_on(self.nodes, self.corners)
 
     def add_turning(self, tangent: Floats, reaction: Floats, *, stiffening: bool) -> None:
         """Add to a tangent (9 n,) like `tangent`, contiguous, how the joints' forces turn each segment as it turns.

@@ -88,6 +88,10 @@ class _Pairs(ctypes.Structure):
                 "elastic",
                 "normal_stiffness",
                 "tangential_stiffness",
+                "line",
+                "slope",
+                "was_line",
+                "was_slope",
             )
         ),
         ("near_count", ctypes.c_int),
@@ -98,7 +102,7 @@ class _Pairs(ctypes.Structure):
 class _Motion(ctypes.Structure):
     _fields_ = [
         *((name, _DOUBLES) for name in ("q", "c", "s", "v", "q0", "c0", "s0")),
-        ("predicted", ctypes.c_int),
+        *((name, ctypes.c_int) for name in ("predicted", "followed")),
     ]
 
 
@@ -174,7 +178,7 @@ class Motion:
     def __init__(self, bodies: int) -> None:
         self.q, self.v, self.q0 = (np.zeros((bodies, 3)) for _ in range(3))
         self.c, self.s, self.c0, self.s0 = (np.zeros(bodies) for _ in range(4))
-        self.struct = _Motion(*(_pointer(a) for a in (self.q, self.c, self.s, self.v, self.q0, self.c0, self.s0)), 0)
+        self.struct = _Motion(*map(_pointer, (self.q, self.c, self.s, self.v, self.q0, self.c0, self.s0)), 0, 0)
         self.address = ctypes.addressof(self.struct)
 
     def set(self, q: Floats, v: Floats) -> None:
@@ -232,6 +236,10 @@ class Kernel:
         self._library.gw_contact_evaluate(
             self._address, motion.address, nodes.address, corners.address, position, velocity, *self._outputs
         )
+
+    def step_on(self, nodes: Pairs, corners: Pairs) -> None:
+        """Newton steps on from the place of the last `evaluate`."""
+        self._library.gw_contact_step_on(nodes.address, corners.address)
 
     def candidates(
         self,
@@ -321,6 +329,7 @@ def _load() -> ctypes.CDLL:
     pointer, real, integer = ctypes.c_void_p, ctypes.c_double, ctypes.c_int
     signatures: dict[str, tuple[list[Any], Any]] = {
         "gw_contact_evaluate": ([pointer] * 4 + [real] * 2 + [pointer] * 2, None),
+        "gw_contact_step_on": ([pointer] * 2, None),
         "gw_contact_boxes": ([integer], integer),
         "gw_contact_index": ([pointer], None),
         "gw_contact_candidates": ([pointer] * 4 + [integer] + [pointer] * 2, integer),

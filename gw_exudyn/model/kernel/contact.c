@@ -51,6 +51,8 @@ typedef struct {
     double *gap, *normal, *tangential, *weight, *energy;       /* results: m, N, N, -, J */
     double *slip, *elastic;                                    /* results, m: slip since the start of the step; elastic slip now */
     double *normal_stiffness, *tangential_stiffness;           /* results: N/m, weighted, without damping */
+    double *line, *slope;                                      /* results: the normal spring's tangent, line (m) + slope * (toe - gap); slope 0: open */
+    double *was_line, *was_slope;                              /* the same at the place from which Newton stepped */
     int near_count, *near;                                     /* pairs that can touch near `seen`; none known: -1 */
 } Pairs;
 
@@ -58,6 +60,7 @@ typedef struct {
 typedef struct {
     const double *q, *c, *s, *v, *q0, *c0, *s0;
     int predicted;                                             /* 1: a step's first guess; its tangent keeps the held stiffness */
+    int followed;                                              /* 1: a place to which Newton stepped from that of was_line, was_slope */
 } Motion;
 
 /* Bounding boxes of runs of 8, of 64 and of 512 neighbours in a list: walls, corners and segments come in the order of their
@@ -82,19 +85,45 @@ typedef struct {
     double d_friction;              /* N, d tangential / d friction coefficient */
     double elastic;                 /* m, the slip that the tangential spring keeps */
     double energy;                  /* J, in the normal and the tangential spring */
+    double line, slope;             /* as in Pairs */
 } Law;
+
+/* Depth of the normal spring, in which its force is linear, and its slope, where a contact is `in` past its onset. */
+static double depth_at(double toe, double in) { return in <= 0 ? 0 : in < 2 * toe ? in * in / (4 * toe) : in - toe; }
+static double slope_at(double toe, double in) { return in <= 0 ? 0 : in < 2 * toe ? in / (2 * toe) : 1; }
+
+/* Where the normal spring is taken by its tangent, for a contact that is `in` past its onset.
+ *
+ * Plain Newton takes it at `in`. Where walls only just touch, the quadratic onset then has a double root, and each iteration no
+ * more than halves what is left. What the wire can do is to set the force, not the place: so it is taken where the spring has
+ * the force that the linear step foresaw, which is never deeper, as the spring stiffens. The force given is that of the
+ * tangent at `in`. It is off by the share (in - at) / (2 at) of what then is off balance there: by LEAST, twice that at
+ * most, so a step that is balanced to the tolerance has the forces of the law. */
+static const double LEAST = 0.2;
+
+static double taken_at(double toe, double in, double was_line, double was_slope)
+{
+    if (in <= 0 || was_slope <= 0) return in;
+    const double foreseen = was_line + was_slope * in;
+    const double at = foreseen <= 0 ? 0 : foreseen < toe ? 2 * square_root(toe * foreseen) : foreseen + toe;
+    return clamp(at, LEAST * in, in);
+}
 
 /* `held`: least share of the stiffness that the tangent keeps. The first guess of a step may lift a wire off the walls that
  * carry it; without their stiffness a compressed wire has next to none, and Newton's first step goes far astray. */
-static Law contact_law(const System *sys, double gap, double rate, double elastic_slip, double friction, double held)
+static Law contact_law(const System *sys, double gap, double rate, double elastic_slip, double friction, double held,
+                       double was_line, double was_slope)
 {
     Law law;
-    const double toe = sys->toe, u = clamp(toe - gap, 0, 2 * toe), deep = gap < -toe ? -gap - toe : 0;
-    const double depth = u * u / (4 * toe) + deep, slope = u / (2 * toe);
+    const double toe = sys->toe, in = toe - gap, at = taken_at(toe, in, was_line, was_slope);
+    const double slope = slope_at(toe, at), depth = depth_at(toe, at) + slope * (in - at);
+    const double u = clamp(in, 0, 2 * toe), deep = gap < -toe ? -gap - toe : 0;
     const double modulus = sys->stiffness - sys->damping * rate;
     const int pushing = modulus > 0;
     law.normal = pushing ? depth * modulus : 0;
-    law.d_gap = pushing ? -(slope > held ? slope : held) * modulus : 0;
+    law.slope = pushing ? (slope > held ? slope : held) : 0;
+    law.line = depth - law.slope * in;
+    law.d_gap = pushing ? -law.slope * modulus : 0;
     law.d_rate = pushing ? -depth * sys->damping : 0;
     law.stiffness = pushing ? slope * sys->stiffness : 0;
     law.energy = sys->stiffness * (u * u * u / (12 * toe) + deep * (toe + 0.5 * deep));
@@ -122,6 +151,7 @@ static void store(Pairs *p, int i, double gap, const Law *law, double weight, do
     p->gap[i] = gap; p->normal[i] = law->normal; p->tangential[i] = law->tangential;
     p->weight[i] = weight; p->energy[i] = weight * law->energy;
     p->slip[i] = slip; p->elastic[i] = law->elastic;
+    p->line[i] = law->line; p->slope[i] = law->slope;
     p->normal_stiffness[i] = weight * law->stiffness; p->tangential_stiffness[i] = -weight * law->d_slip;
 }
 
@@ -129,6 +159,7 @@ static void store(Pairs *p, int i, double gap, const Law *law, double weight, do
 static void store_open(Pairs *p, int i, double gap)
 {
     p->gap[i] = gap;
+    p->line[i] = p->slope[i] = 0;
     if (p->weight[i] == 0) return;
     p->normal[i] = p->tangential[i] = p->weight[i] = p->energy[i] = p->slip[i] = p->elastic[i] = 0;
     p->normal_stiffness[i] = p->tangential_stiffness[i] = 0;
@@ -157,7 +188,8 @@ static void node_pair(const System *sys, const Motion *m, Pairs *p, int i, doubl
     const double weight = smooth(a) * smooth(z);
     if (weight <= 0) { store_open(p, i, gap); return; }
     const double rate = nx * (v[0] - ay * v[2]) + ny * (v[1] + ax * v[2]);
-    const Law law = contact_law(sys, gap, rate, p->start[i] + slip, sys->wall_friction[w] * sys->wire_friction[b + 1], held);
+    const Law law = contact_law(sys, gap, rate, p->start[i] + slip, sys->wall_friction[w] * sys->wire_friction[b + 1], held,
+                                p->was_line[i], m->followed ? p->was_slope[i] : 0);
     store(p, i, gap, &law, weight, slip);
 
     const double G[3] = {nx, ny, -nx * ay + ny * ax}, T[3] = {tx, ty, -tx * ay + ty * ax};   /* of gap and of slip */
@@ -256,7 +288,7 @@ static void corner_pair(const System *sys, const Motion *m, Pairs *p, int i, dou
     const double h = sys->half_length[b], change = (sys->wire_friction[b + 1] - sys->wire_friction[b]) / (2 * h);
     const double friction = sys->corner_friction[k] * (sys->wire_friction[b] + change * (pl.foot + h));
     const double slope = pl.over == 0 ? sys->corner_friction[k] * change : 0, along[3] = {-slope, 0, slope * pl.y};
-    const Law law = contact_law(sys, gap, rate, p->start[i] + slip, friction, held);
+    const Law law = contact_law(sys, gap, rate, p->start[i] + slip, friction, held, p->was_line[i], m->followed ? p->was_slope[i] : 0);
     store(p, i, gap, &law, weight, slip);
 
     const double d_normal = law.d_gap * fq + law.d_rate * fv;
@@ -339,6 +371,21 @@ static void look_around(const System *sys, const Motion *m, Pairs *nodes, Pairs 
     }
 }
 
+static void step_on(Pairs *p)
+{
+    for (int i = 0; i < p->count; i++) {
+        p->was_line[i] = p->line[i];
+        p->was_slope[i] = p->slope[i];
+    }
+}
+
+/* Newton steps on from the place of the last evaluation. */
+EXPORT void gw_contact_step_on(Pairs *nodes, Pairs *corners)
+{
+    step_on(nodes);
+    step_on(corners);
+}
+
 /* force (3 bodies), tangent (9 bodies, row by row of each block) are overwritten. */
 EXPORT void gw_contact_evaluate(const System *sys, const Motion *m, Pairs *nodes, Pairs *corners,
                                 double fq, double fv, double *force, double *tangent)
@@ -393,7 +440,7 @@ typedef struct { double deepest, largest, energy, friction, damping; int body, t
 
 EXPORT void gw_contact_summary(const System *sys, const Motion *m, const Pairs *nodes, const Pairs *corners, Summary *found)
 {
-    const Motion start = {m->q0, m->c0, m->s0, m->v, m->q0, m->c0, m->s0, 0};
+    const Motion start = {m->q0, m->c0, m->s0, m->v, m->q0, m->c0, m->s0, 0, 0};
     const Summary nothing = {0, 0, 0, 0, 0, -1, -1, 0};
     double along;
     *found = nothing;
@@ -493,6 +540,7 @@ static int append(Pairs *p, int body, int target, double side)
     p->start[p->count] = p->held[p->count] = p->weight[p->count] = 0;
     p->normal[p->count] = p->tangential[p->count] = p->energy[p->count] = p->slip[p->count] = p->elastic[p->count] = 0;
     p->normal_stiffness[p->count] = p->tangential_stiffness[p->count] = 0;
+    p->line[p->count] = p->slope[p->count] = p->was_line[p->count] = p->was_slope[p->count] = 0;
     p->count++;
     return 1;
 }
