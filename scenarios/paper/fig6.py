@@ -106,7 +106,9 @@ def _draw(runs: Runs, touching: dict[tuple[str, str], Touching], depth: Any) -> 
     lengths = {key: touch.length * 1e3 for key, touch in touching.items()}
     _draw_curves(figure.add_subplot(grid[1, 0]), depth, lengths, "length within 0.1 mm of a wall [mm]")
     counts = {key: touch.contacts.astype(float) for key, touch in touching.items()}
-    _draw_curves(figure.add_subplot(grid[1, 1]), depth, counts, "separate contacts with force")
+    axes = figure.add_subplot(grid[1, 1])
+    _draw_curves(axes, depth, counts, "separate contacts with force")
+    axes.set_yticks(range(int(max(one.max() for one in counts.values())) + 1))
     return figure
 
 

@@ -138,10 +138,7 @@ def _draw(rows: list[dict[str, Any]]) -> Any:
 
 
 def _label(wire: str, estimate: str) -> str:
-    words = wire.removesuffix("-shaft").replace("-", " ")
-    if wire in WHOLE_WIRES:
-        return f"{words}, {estimate} EI"
-    return f"{words} *"
+    return f"{wire}, {estimate} EI" if wire in WHOLE_WIRES else f"{wire} *"
 
 
 def _draw_cell(axes: Any, x: int, y: int, row: dict[str, Any], colours: Any, norm: Any) -> None:
