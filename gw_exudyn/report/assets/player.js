@@ -1,11 +1,9 @@
 // The player: time, keys, pointers, and what they do to scene and chart.
 const scene = new Scene();
 const chart = new Chart();
-const $ = id => document.getElementById(id);
-let time = 0, playing = false, last = 0, asked = false;
+let time = 0, playing = false, last = 0;
 
 function show() {
-  asked = false;
   scene.draw(time);
   chart.draw(time);
   $("scrub").value = String(END > 0 ? 1000 * time / END : 0);
@@ -13,14 +11,14 @@ function show() {
   readings();
 }
 
-function ask() { if (!asked) { asked = true; requestAnimationFrame(show); } }
+const ask = onceAFrame(show);
 function go(to) { time = Math.min(Math.max(to, 0), END); ask(); }
 
 function readings() {
   const shown = RUNS.filter(run => run.shown);
-  const rows = Object.keys(shown.length ? shown[0].scalars : {}).filter(name => name !== "time").map(name =>
+  const rows = scalarNames(shown).filter(name => name !== "time").map(name =>
     `<tr title="${DATA.scalars[name].meaning}"><td>${DATA.scalars[name].label}</td>` +
-    shown.map(run => `<td data-reading="${name}">${withUnit(name, run.scalars[name][frameAt(run, time)])}</td>`).join("") + "</tr>");
+    shown.map(run => `<td data-reading="${name}">${withUnit(name, seriesOf(run, name)[frameAt(run, time)])}</td>`).join("") + "</tr>");
   const head = shown.map(run => { const cell = document.createElement("th"); cell.textContent = run.name; return cell.outerHTML; }).join("");
   $("readings").innerHTML = `<div class="wide"><table><thead><tr><th>at ${time.toFixed(2)} s</th>${head}</tr></thead><tbody>${rows.join("")}</tbody></table></div>`;
 }
@@ -48,7 +46,11 @@ function step(count) {
   go(run.time[frame]);
 }
 
+// Names of the scalars of any of the runs.
+function scalarNames(runs) { return [...new Set(runs.flatMap(run => Object.keys(run.scalars)))]; }
+
 function legend() {
+  $("legend").replaceChildren();
   for (const run of RUNS) {
     const label = document.createElement("label"), box = document.createElement("input"), line = document.createElement("i");
     box.type = "checkbox"; box.checked = true; line.style.borderColor = run.colour;
@@ -75,11 +77,6 @@ function keys(event) {
 
 // Pointers on the scene: one drags or reads, two pinch.
 const down = new Map();
-
-function at(event, element) {
-  const box = element.getBoundingClientRect();
-  return [event.clientX - box.left, event.clientY - box.top];
-}
 
 function sceneMoved(event) {
   const place = at(event, scene.element), before = down.get(event.pointerId);
@@ -111,15 +108,28 @@ function listen() {
   const curve = chart.element;
   curve.addEventListener("pointerdown", event => { curve.setPointerCapture(event.pointerId); play(false); go(chart.timeAt(at(event, curve)[0])); });
   curve.addEventListener("pointermove", event => { if (event.buttons) go(chart.timeAt(at(event, curve)[0])); });
-  new ResizeObserver(() => { scene.fit(); chart.fit(); ask(); }).observe(stage);
+  const resized = new ResizeObserver(() => { scene.fit(); chart.fit(); ask(); });
+  resized.observe(stage);
+  resized.observe(curve);
 }
 
-for (const name of Object.keys(RUNS[0].scalars).filter(name => !["time", "insertion_depth"].includes(name))) {
-  const option = document.createElement("option");
-  option.value = name; option.textContent = DATA.scalars[name].label; option.selected = name === chart.name;
-  $("curve").append(option);
+// The curves there are to choose from; the one on show stays, if there is one of its name.
+function curveNames() {
+  const names = scalarNames(RUNS).filter(name => !["time", "insertion_depth"].includes(name));
+  if (!names.includes(chart.name)) chart.name = names[0];
+  $("curve").replaceChildren(...names.map(name => make("option", { value: name, textContent: DATA.scalars[name].label, selected: name === chart.name })));
 }
-legend();
-listen();
-scene.fit(); chart.fit(); scene.fitView();
-go(0);
+
+// After other runs were put on show.
+function refreshPlayer() {
+  play(false);
+  legend();
+  curveNames();
+  scene.fit(); chart.fit(); scene.reset();
+  go(time);
+}
+
+function startPlayer() {
+  listen();
+  refreshPlayer();
+}

@@ -1,24 +1,17 @@
 // The plane of the vessel: view, walls, wires, arrows, and what lies under the pointer. Lengths in millimetres.
 const FORCE_COLOUR = "#D55E00";
 
-function canvasOf(id) {
-  const element = document.getElementById(id);
-  const pen = element.getContext("2d");
-  const fit = () => {
-    const ratio = window.devicePixelRatio || 1;
-    element.width = Math.max(1, Math.round(element.clientWidth * ratio));
-    element.height = Math.max(1, Math.round(element.clientHeight * ratio));
-    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-  };
-  return { element, pen, fit };
-}
-
 class Scene {
   constructor() {
-    Object.assign(this, canvasOf("scene"));
-    this.tooltip = document.getElementById("tooltip");
-    this.longest = largestForce();
+    Object.assign(this, canvasOf($("scene")));
+    this.tooltip = $("tooltip");
     this.arrowFactor = 1;
+    this.reset();
+  }
+
+  // After other runs were put on show.
+  reset() {
+    this.longest = largestForce();
     this.fitView();
   }
 

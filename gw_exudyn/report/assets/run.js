@@ -1,0 +1,3 @@
+// The page of a run, or of a few: the player shows all of them.
+setRuns(DATA.runs.map(unpacked));
+startPlayer();
