@@ -24,8 +24,8 @@ READINGS = ("insertion_depth", "tip_x", "tip_y", "tip_angle", "contacts", *CURVE
 
 MOST_FRAMES = 600
 MOST_NODES = 201
-_LEVELS = 65534
-_NO_NUMBER = 65535
+LEVELS = 65534
+NO_NUMBER = 65535
 """Stands for a coordinate that is not finite."""
 
 
@@ -86,4 +86,4 @@ def _box(course: Floats) -> tuple[Floats, Floats]:
 def _quantised(course: Floats, low: Floats, high: Floats) -> Floats:
     share = (course - low) / np.maximum(high - low, 1e-9)
     known = np.isfinite(share).all(axis=-1, keepdims=True)
-    return np.where(known, np.nan_to_num(share) * _LEVELS, _NO_NUMBER).round()
+    return np.where(known, np.nan_to_num(share) * LEVELS, NO_NUMBER).round()

@@ -1,5 +1,5 @@
 // One curve of all runs over time or depth, with a cursor; values under the pointer.
-const MARGIN = { left: 62, right: 14, top: 14, bottom: 34 };
+const MARGIN = { left: 62, right: 14, top: 24, bottom: 34 };
 
 class Chart {
   constructor() {
@@ -57,7 +57,7 @@ class Chart {
     for (const value of ticks(maps.x0, maps.x1)) pen.fillText(numberText(value, 6), maps.x(value), bottom + 4);
     pen.fillText(headText(DATA.scalars[this.against]), this.element.clientWidth / 2, bottom + 18);
     pen.textAlign = "left";
-    pen.fillText(headText(DATA.scalars[this.name]), 4, 1);
+    pen.fillText(headText(DATA.scalars[this.name]), 4, 3);
     pen.textBaseline = "alphabetic";
   }
 

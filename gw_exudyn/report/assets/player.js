@@ -62,6 +62,7 @@ function legend() {
 }
 
 function keys(event) {
+  if (event.defaultPrevented) return;
   if (event.target.matches("select, input[type=range], summary") && event.key !== " ") return;
   if (event.target.matches("button, select, summary, input[type=checkbox]") && event.key === " ") return;
   const far = event.shiftKey ? 10 : 1, middle = [scene.element.clientWidth / 2, scene.element.clientHeight / 2];
@@ -91,14 +92,15 @@ function sceneMoved(event) {
   ask();
 }
 
-function listen() {
+// hears : what hears the keys.
+function listen(hears) {
   $("play").addEventListener("click", () => play(!playing));
   $("scrub").addEventListener("input", event => go(END * Number(event.target.value) / 1000));
   $("fit").addEventListener("click", () => { scene.fitView(); ask(); });
   $("arrows").addEventListener("input", event => { scene.arrowFactor = 10 ** Number(event.target.value); ask(); });
   $("curve").addEventListener("change", event => { chart.name = event.target.value; ask(); });
   $("against").addEventListener("change", event => { chart.against = event.target.value; ask(); });
-  document.addEventListener("keydown", keys);
+  hears.addEventListener("keydown", keys);
   const stage = scene.element;
   stage.addEventListener("pointerdown", event => { stage.setPointerCapture(event.pointerId); down.set(event.pointerId, at(event, stage)); scene.read(...at(event, stage), time); });
   stage.addEventListener("pointermove", sceneMoved);
@@ -127,9 +129,4 @@ function refreshPlayer() {
   curveNames();
   scene.fit(); chart.fit(); scene.reset();
   go(time);
-}
-
-function startPlayer() {
-  listen();
-  refreshPlayer();
 }

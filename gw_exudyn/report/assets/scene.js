@@ -1,5 +1,6 @@
 // The plane of the vessel: view, walls, wires, arrows, and what lies under the pointer. Lengths in millimetres.
 const FORCE_COLOUR = "#D55E00";
+const BAR_ROOM = 36;  // pixels at the bottom, for the scale bars
 
 class Scene {
   constructor() {
@@ -21,10 +22,10 @@ class Scene {
     const hold = (x, y) => { x0 = Math.min(x0, x); y0 = Math.min(y0, y); x1 = Math.max(x1, x); y1 = Math.max(y1, y); };
     for (const run of RUNS) for (const line of run.walls) for (const [x, y] of line) hold(x, y);
     if (!Number.isFinite(x0)) for (const run of RUNS) { hold(run.box[0], run.box[1]); hold(run.box[2], run.box[3]); }
-    const width = this.element.clientWidth || 1, height = this.element.clientHeight || 1;
+    const width = this.element.clientWidth || 1, height = Math.max((this.element.clientHeight || 1) - BAR_ROOM, 1);
     this.size = Math.max(x1 - x0, y1 - y0, 1);
-    this.scale = 0.92 * Math.min(width / Math.max(x1 - x0, 1), height / Math.max(y1 - y0, 1));
-    this.centre = [(x0 + x1) / 2, (y0 + y1) / 2];
+    this.scale = 0.95 * Math.min(width / Math.max(x1 - x0, 1), height / Math.max(y1 - y0, 1));
+    this.centre = [(x0 + x1) / 2, (y0 + y1) / 2 - BAR_ROOM / 2 / this.scale];
   }
 
   px(x, y) {
