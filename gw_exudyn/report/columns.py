@@ -69,5 +69,5 @@ def text_column(label: str, texts: Sequence[str], **further: Any) -> Column:
         return Column(label, list(texts), **further)
     head, bracket, unit = label.rpartition(" [")
     if bracket and unit.endswith("]"):
-        return Column(head, numbers, plain(unit[:-1]), digits=6, **further)
+        return Column(head, numbers, plain(unit[:-1]).replace("mm2", "mm\u00b2"), digits=6, **further)
     return Column(label, numbers, digits=6, **further)

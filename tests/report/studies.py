@@ -33,7 +33,7 @@ def made_up_study(count: int = 12, metrics: int = 2, instants: int = 20, **furth
         si_column("time", "push force max time", "s", np.where(good, rows, np.nan), good, role="metric"),
         *(si_column("", f"further {i}", "1", np.sin(rows * (i + 1)), good, role="metric", open=False)
           for i in range(metrics - 2)),
-        Column("reason", ["It was pressed into a wall" if text == "too_deep" else "" for text in status], role="reason"),
+        Column("reason", ["Pressed into a wall" if text == "too_deep" else "" for text in status], role="reason"),
     ]  # fmt: skip
     names, places = chosen(["push_force", "insertion_depth"], count, instants, 2)
     time = np.linspace(0.0, 1.0, instants)[places]

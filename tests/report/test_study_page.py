@@ -151,7 +151,7 @@ def test_a_failed_point_is_told_apart_everywhere(page):
     x, y = place(page, FAILED)
     assert page.evaluate("() => scatter.place.up.high") == pytest.approx(124.4, abs=1)
     page.mouse.click(x, y)
-    assert page.locator("#outcome").inner_text() == "too_deep (not to be trusted) It was pressed into a wall"
+    assert page.locator("#outcome").inner_text() == "too_deep (not to be trusted) Pressed into a wall"
     assert "not to be trusted" in page.locator("#legend").inner_text()
     # Without a number it lies in a strip of its own.
     page.locator("#y").select_option(label="push force max time [s]")

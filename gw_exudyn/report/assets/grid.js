@@ -53,7 +53,8 @@ function rounded(value, digits) { return Number(value.toPrecision(digits)); }
 
 class Grid {
   // columns : unpacked. count : rows. options : label; last(row): it stands behind the others in any order; mark(row): class of
-  // the row; chosen(row): called when a row is chosen; changed(): called when other rows are shown.
+  // the row; chosen(row): called when a row is chosen; changed(): called when other rows are shown; wrap: long words wrap, and all
+  // rows are in the document.
   constructor(root, columns, count, options) {
     Object.assign(this, { columns, count, options, root, filters: new Map(), sorted: null, active: -1, order: [] });
     this.draw = onceAFrame(() => this.rows());
@@ -68,7 +69,7 @@ class Grid {
     this.head = make("thead");
     this.widths = make("colgroup");
     this.table = make("table", { role: "grid", "aria-label": this.options.label, "aria-rowcount": String(this.count + 1) }, this.widths, this.head, this.body);
-    this.port = make("div", { className: "port", tabIndex: 0, role: "group", "aria-label": `${this.options.label}: rows` }, this.table);
+    this.port = make("div", { className: this.options.wrap ? "port wrap" : "port", tabIndex: 0, role: "group", "aria-label": `${this.options.label}: rows` }, this.table);
     const bar = make("div", { className: "controls" }, this.counted, this.clear);
     if (this.columns.some(column => !column.open)) bar.append(this.chooser());
     this.root.append(bar, this.port);
@@ -126,7 +127,7 @@ class Grid {
     const step = Math.max(1, Math.floor(this.count / 2000));
     let most = Math.max(10, ...headText(column).split(/[\s]+/).map(word => word.length + 2), headText(column).length / 3);
     for (let row = 0; row < this.count; row += step) most = Math.max(most, cellText(column, row).length);
-    return column.wide = Math.round(22 + 8 * Math.min(most, 40));
+    return column.wide = Math.round(22 + 8 * Math.min(most, this.options.wrap ? 24 : 40));
   }
 
   filter(column, text) {
@@ -175,8 +176,9 @@ class Grid {
   }
 
   rows() {
-    const top = Math.max(0, Math.floor(this.port.scrollTop / ROW) - BEYOND);
-    const end = Math.min(this.order.length, Math.ceil((this.port.scrollTop + this.port.clientHeight) / ROW) + BEYOND);
+    const all = this.options.wrap, sight = [this.port.scrollTop, this.port.scrollTop + this.port.clientHeight];
+    const top = all ? 0 : Math.max(0, Math.floor(sight[0] / ROW) - BEYOND);
+    const end = all ? this.order.length : Math.min(this.order.length, Math.ceil(sight[1] / ROW) + BEYOND);
     const room = height => make("tr", { className: "room", "aria-hidden": "true" }, make("td", { colSpan: this.open.length, style: `height:${height}px` }));
     const found = [];
     if (top > 0) found.push(room(top * ROW));
@@ -199,7 +201,7 @@ class Grid {
   choose(row, tell = true) {
     this.active = row;
     const place = this.order.indexOf(row), above = this.head.offsetHeight;
-    if (place >= 0) {
+    if (place >= 0 && !this.options.wrap) {
       const top = place * ROW, high = this.port.clientHeight - above;
       if (top < this.port.scrollTop) this.port.scrollTop = top;
       if (top + ROW > this.port.scrollTop + high) this.port.scrollTop = top + ROW - high;
