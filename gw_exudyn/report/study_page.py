@@ -101,14 +101,14 @@ def _status(study: StudyPage) -> str:
     if counts[Outcome.FAILED]:
         told.append(f"{counts[Outcome.FAILED]} failed or can't be trusted")
     if counts[Outcome.NOT_RUN]:
-        told.append(f"{counts[Outcome.NOT_RUN]} were not run")
+        told.append(f"{counts[Outcome.NOT_RUN]} not run")
     kind = "bad" if counts[Outcome.FAILED] else "waiting" if counts[Outcome.NOT_RUN] else "good"
     notes = "".join(f'<p class="hint">{html.escape(note)}</p>' for note in study.notes)
     return f'<p class="status {kind}">{", ".join(told)}</p>{notes}'
 
 
 def _hint(study: StudyPage) -> str:
-    if (np.asarray(study.outcome) == Outcome.GOOD).all():
+    if not (np.asarray(study.outcome) == Outcome.FAILED).any():
         return ""
     return (
         "Points that failed are crosses, in red: they count neither for the axes nor for the colours, stand behind the "

@@ -107,3 +107,12 @@ def test_a_touch_in_the_curve_scrubs(page):
     box = page.locator("#chart").bounding_box()
     page.touchscreen.tap(box["x"] + 0.5 * box["width"], box["y"] + 80)
     assert clock(page) > 0
+
+
+def test_a_thin_wire_is_drawn_over_a_thick_one_on_its_way(page):
+    drawn = page.evaluate(
+        "() => { const found = [], draw = scene.drawWire; scene.drawWire = run => found.push(run.diameter);"
+        " scene.draw(0); scene.drawWire = draw; return found; }"
+    )
+    assert drawn == sorted(drawn, reverse=True)
+    assert drawn[0] > drawn[-1]

@@ -144,7 +144,7 @@ def test_the_other_axes_draw_another_chart(page):
 
 
 def test_a_failed_point_is_told_apart_everywhere(page):
-    assert "10 came out well, 1 failed or can't be trusted, 1 were not run" in page.locator("header").inner_text()
+    assert "10 came out well, 1 failed or can't be trusted, 1 not run" in page.locator("header").inner_text()
     assert page.locator("#points tr.bad").count() == 1
     assert page.locator("#points tr.waiting").count() == 1
     # It does not stretch the axis: 5 N where the others reach 120 mN.

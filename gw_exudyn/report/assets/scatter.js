@@ -103,6 +103,7 @@ class Scatter {
       return;
     }
     if (!this.good(row)) {
+      size = Math.max(size, 4);
       pen.strokeStyle = shown ? BAD : "#e8cdbf"; pen.lineWidth = 1.8; pen.setLineDash([]);
       pen.beginPath(); pen.moveTo(x - size, y - size); pen.lineTo(x + size, y + size); pen.moveTo(x + size, y - size); pen.lineTo(x - size, y + size); pen.stroke();
       return;

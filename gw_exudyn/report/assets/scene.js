@@ -65,7 +65,8 @@ class Scene {
       for (const line of run.walls) { this.path(line); pen.stroke(); }
     }
     pen.setLineDash([]);
-    for (const run of RUNS) if (run.shown) this.drawWire(run, frameAt(run, time));
+    // Thick ones first, so that a thin one on the same way is not hidden.
+    for (const run of RUNS.filter(one => one.shown).sort((a, b) => b.diameter - a.diameter)) this.drawWire(run, frameAt(run, time));
     for (const run of RUNS) if (run.shown) this.drawForces(run, frameAt(run, time));
     this.drawScaleBar();
   }
