@@ -176,6 +176,11 @@ def test_the_command_runs_the_point_again_to_the_last_digit(page):
     assert given["wire.model"] == "amplatz-super-stiff"
 
 
+def test_a_study_that_no_command_runs_again_has_none(opened, tmp_path):
+    page = opened(save_page(study_page(made_up_study(command=())), tmp_path / "study.html"))
+    assert page.locator("#again").is_hidden()
+
+
 def test_curves_of_points_that_are_held_stay_on_show(page):
     for row in (1, 2):
         page.locator(f"#points tr[data-row='{row}']").click()

@@ -40,6 +40,7 @@ function showPoint(row) {
   $("outcome").className = `status ${good(row) ? "good" : ran(row) ? "bad" : "waiting"}`;
   $("outcome").replaceChildren(make("b", { textContent: cellText(status, row) }), ran(row) && !good(row) ? " (not to be trusted) " : " ", cellText(reason, row));
   $("values").replaceChildren(valuesOf("parameter", row), valuesOf("metric", row));
+  $("again").hidden = !STUDY.command.length;
   $("command").textContent = commandOf(row);
   $("kept").replaceChildren(...keptOf(row));
   $("hold").textContent = held.includes(row) ? "let go" : "hold";
@@ -63,7 +64,6 @@ function quoted(word) { return /^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.r
 function yamlNumber(value) { return String(value).replace(/^(-?\d+)e/, "$1.0e"); }
 
 function commandOf(row) {
-  if (!STUDY.command) return "";
   const words = [...STUDY.command];
   for (const column of columns) if (column.role === "parameter") {
     const value = column.number ? yamlNumber(column.exact[row]) : STUDY.values[column.label]?.[column.values[row]] ?? column.values[row];
