@@ -6,7 +6,10 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Iterator, Mapping, Sequence
+import math
+import sys
+from array import array
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -56,69 +59,102 @@ def read_points(folder: Path, about: Mapping[str, Any]) -> Points:
     units: Mapping[str, str | None] = about["parameters"]
     # A sweep that goes on writes its summary last: without it the table is missing, or that of an earlier study.
     if "summary" not in about or not (folder / TABLE).is_file():
-        return _points(units, list(_so_far(folder, units)), whole=False)
-    with open(folder / TABLE, newline="", encoding="utf-8") as file:
-        head, *rows = csv.reader(file)
+        return _so_far(folder, units)
+    gathered = _Gathered(units)
     first = len(units) + 2
-    if head[first : first + 3] != ["status", "trusted", "reason"] or any(len(row) != len(head) for row in rows):
-        raise StorageError(f"{folder / TABLE}: is damaged; give the command of the sweep again: {about['command']}")
-    names = [name.rpartition(" [") for name in head[first + 3 :]]
-    found = [
-        _Row(int(row[0]), row[1], dict(zip(units, row[2:first], strict=True)), row[first], row[first + 2],
-             row[first + 1] == "true", {name: (cell, unit[:-1]) for (name, _, unit), cell in
-                                        zip(names, row[first + 3 :], strict=True)})
-        for row in rows
-    ]  # fmt: skip
-    return _points(units, found, whole=True)
+    with open(folder / TABLE, newline="", encoding="utf-8") as file:
+        rows = csv.reader(file)
+        head = next(rows, [])
+        names = [name.rpartition(" [") for name in head[first + 3 :]]
+        known = head[first : first + 3] == ["status", "trusted", "reason"]
+        for row in rows if known else ([],):
+            if not known or len(row) != len(head):
+                again = f"give the command of the sweep again: {about['command']}"
+                raise StorageError(f"{folder / TABLE}: is damaged; {again}")
+            status, trusted, reason, *numbers = row[first:]
+            metrics = {name: (cell, unit[:-1]) for (name, _, unit), cell in zip(names, numbers, strict=True)}
+            gathered.add(
+                int(row[0]),
+                row[1],
+                dict(zip(units, row[2:first], strict=True)),
+                status,
+                trusted == "true",
+                reason,
+                metrics,
+            )
+    return gathered.points(whole=True)
 
 
-@dataclass(frozen=True)
-class _Row:
-    number: int
-    id: str
-    labels: Mapping[str, Any]
-    status: str
-    reason: str
-    trusted: bool
-    metrics: Mapping[str, tuple[Any, str]]
-
-
-def _so_far(folder: Path, units: Mapping[str, str | None]) -> Iterator[_Row]:
-    """Rows of the points with these parameters that are done, by their parameters."""
-    rows = []
+def _so_far(folder: Path, units: Mapping[str, str | None]) -> Points:
+    """The points with these parameters that are done, by their parameters."""
+    found = []
     for place in sorted((folder / POINTS).iterdir() if (folder / POINTS).is_dir() else ()):
         content = read_point(place)
         point = (content or {}).get("provenance", {}).get("point", {})
-        if content is None or set(point.get("parameters", {})) != set(units):
-            continue
+        if content is not None and set(point.get("parameters", {})) == set(units):
+            found.append((place.name, point["parameters"], content))
+    found.sort(key=lambda one: [(str(type(one[1][path])), one[1][path]) for path in units])
+    gathered = _Gathered(units)
+    for number, (name, labels, content) in enumerate(found):
         status = str(content["status"].get("name"))
         metrics = {"wall_time": (content.get("wall_time"), "s")}
         metrics |= {name: (entry["value"], entry["unit"]) for name, entry in content.get("metrics", {}).items()}
         reason = "" if status == COMPLETED else str(content["status"].get("sentence"))
-        good = content.get("trusted") is True
-        rows.append(_Row(0, place.name, point["parameters"], status, reason, good, metrics))
-    rows.sort(key=lambda row: [(str(type(row.labels[path])), row.labels[path]) for path in units])
-    return (_Row(**{**row.__dict__, "number": i}) for i, row in enumerate(rows))
+        gathered.add(number, name, labels, status, content.get("trusted") is True, reason, metrics)
+    return gathered.points(whole=False)
 
 
-def _points(units: Mapping[str, str | None], rows: Sequence[_Row], whole: bool) -> Points:
-    labels: dict[str, Floats | Sequence[str]] = {
-        path: [str(row.labels[path]) for row in rows] if unit is None else _numbers(row.labels[path] for row in rows)
-        for path, unit in units.items()
-    }
-    known = {name: unit for row in rows for name, (_, unit) in row.metrics.items()}
-    return Points(
-        numbers=[row.number for row in rows],
-        ids=[row.id for row in rows],
-        status=[row.status for row in rows],
-        reason=[row.reason for row in rows],
-        trusted=np.array([row.trusted for row in rows], dtype=bool),
-        labels=labels,
-        metrics={name: _numbers(row.metrics.get(name, (None,))[0] for row in rows) for name in known},
-        units=known,
-        whole=whole,
-    )
+class _Gathered:
+    """Points as they come in, column by column: a hundred thousand of them do not fill the memory."""
 
+    def __init__(self, units: Mapping[str, str | None]) -> None:
+        self._units = units
+        self._numbers: list[int] = []
+        self._ids: list[str] = []
+        self._status: list[str] = []
+        self._reason: list[str] = []
+        self._trusted: list[bool] = []
+        self._labels: dict[str, Any] = {path: [] if unit is None else array("d") for path, unit in units.items()}
+        self._metrics: dict[str, array[float]] = {}
+        self._metric_units: dict[str, str] = {}
 
-def _numbers(cells: Any) -> Floats:
-    return np.array([np.nan if cell in (None, "") else float(cell) for cell in cells], dtype=float)
+    def add(
+        self,
+        number: int,
+        point: str,
+        labels: Mapping[str, Any],
+        status: str,
+        trusted: bool,
+        reason: str,
+        metrics: Mapping[str, tuple[Any, str]],
+    ) -> None:
+        """Note a point. metrics : values, None or empty where there is none, with their units."""
+        self._numbers.append(number)
+        self._ids.append(point)
+        self._status.append(sys.intern(status))
+        self._trusted.append(trusted)
+        self._reason.append(sys.intern(reason))
+        for path, unit in self._units.items():
+            self._labels[path].append(sys.intern(str(labels[path])) if unit is None else float(labels[path]))
+        for name, (cell, unit) in metrics.items():
+            if name not in self._metrics:
+                self._metrics[name] = array("d", [math.nan] * (len(self._ids) - 1))
+                self._metric_units[name] = unit
+            self._metrics[name].append(math.nan if cell in (None, "") else float(cell))
+        for column in self._metrics.values():
+            if len(column) < len(self._ids):
+                column.append(math.nan)
+
+    def points(self, whole: bool) -> Points:
+        """All of them."""
+        return Points(
+            numbers=self._numbers,
+            ids=self._ids,
+            status=self._status,
+            reason=self._reason,
+            trusted=np.array(self._trusted, dtype=bool),
+            labels={path: np.array(x) if isinstance(x, array) else x for path, x in self._labels.items()},
+            metrics={name: np.array(column) for name, column in self._metrics.items()},
+            units=self._metric_units,
+            whole=whole,
+        )

@@ -52,11 +52,15 @@ def _from_dataset(file: Any, wanted: Sequence[str]) -> Curves | None:
 
 
 def _from_points(folder: Path, ids: Sequence[str], wanted: Sequence[str]) -> Curves | None:
-    found = [read_series(folder / POINTS / point) for point in ids]
+    kept = ("time", *wanted)
+    if not chosen(kept, len(ids), 2, 3)[0]:
+        return None  # no room for so many: not read at all
+    read = (read_series(folder / POINTS / point) for point in ids)
+    found = [one and {name: one[name] for name in kept} for one in read]
     length = max((len(one["time"]) for one in found if one is not None), default=0)
     if not length:
         return None
-    names, instants = chosen(("time", *wanted), len(ids), length, 3)
+    names, instants = chosen(kept, len(ids), length, 3)
     if not names:
         return None
     series = {name: np.full((len(ids), length), np.nan) for name in names}

@@ -144,9 +144,11 @@ def test_a_sweep_that_was_killed_tells_what_it_got_to(folder):
 def test_a_folder_of_something_else_and_a_damaged_table_are_refused(folder, tmp_path):
     with pytest.raises(StorageError, match="is no folder of a sweep"):
         page_of(tmp_path)
-    (folder / "sweep.csv").write_text("point,id\n1,2\n")
-    with pytest.raises(StorageError, match="is damaged; give the command of the sweep again: gw-exudyn sweep"):
-        page_of(folder)
+    whole = (folder / "sweep.csv").read_text()
+    for damaged in ("", "point,id\n", "point,id\n1,2\n", whole[: len(whole) // 2]):
+        (folder / "sweep.csv").write_text(damaged)
+        with pytest.raises(StorageError, match="is damaged; give the command of the sweep again: gw-exudyn sweep"):
+            page_of(folder)
 
 
 def test_many_points_take_fewer_and_coarser_curves():

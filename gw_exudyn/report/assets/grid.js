@@ -100,7 +100,7 @@ class Grid {
     }));
     this.table.style.width = `${this.open.reduce((sum, column) => sum + this.width(column), 0)}px`;
     for (const column of this.open) {
-      const button = make("button", { type: "button", textContent: headText(column), title: column.meaning || "sort", onclick: () => this.sort(column) });
+      const button = make("button", { type: "button", textContent: headText(column).replace(/([._])/g, "$1\u200b"), title: column.meaning || "sort", onclick: () => this.sort(column) });
       names.append(make("th", { scope: "col", className: column.number ? "number" : "", "aria-sort": this.direction(column) }, button));
       filters.append(make("td", {}, this.filterBox(column)));
     }
@@ -125,7 +125,7 @@ class Grid {
   width(column) {
     if (column.wide) return column.wide;
     const step = Math.max(1, Math.floor(this.count / 2000));
-    let most = Math.max(10, ...headText(column).split(/[\s]+/).map(word => word.length + 2), headText(column).length / 3);
+    let most = Math.max(10, ...headText(column).split(/[\s._]+/).map(word => word.length + 3), headText(column).length / 3);
     for (let row = 0; row < this.count; row += step) most = Math.max(most, cellText(column, row).length);
     return column.wide = Math.round(22 + 8 * Math.min(most, this.options.wrap ? 24 : 40));
   }
