@@ -46,7 +46,8 @@ class StudyPage:
     `parameter`s in SI, labelled with their paths, and `metric`s. outcome, kept : (points,) of `Outcome` and `Kept`.
     folder : of the study, as a person types it. elsewhere : folders in it of whole runs, by point. runs : runs as
     `packed_run` gives them, by point. command : words that run a scenario of the study but for its parameters; empty
-    where there is no such command. values : by path and word, what stands for a parameter's word in a scenario.
+    where there is no such command. planned : points of the study, where that are more than these. values : by path and
+    word, what stands for a parameter's word in a scenario.
     first : point shown at first. varied, measured, indices, provenance : heads and rows of tables. notes : sentences.
     figures : PNG files by name.
     """
@@ -66,6 +67,7 @@ class StudyPage:
     command: Sequence[str] = ()
     values: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     first: int = 0
+    planned: int = 0
     notes: Sequence[str] = ()
     figures: Mapping[str, bytes] = field(default_factory=dict)
 
@@ -97,12 +99,14 @@ def study_page(study: StudyPage) -> str:
 
 def _status(study: StudyPage) -> str:
     counts = {outcome: int(np.count_nonzero(np.asarray(study.outcome) == outcome)) for outcome in Outcome}
-    told = [f"{len(study.outcome)} points: {counts[Outcome.GOOD]} came out well"]
+    count = len(study.outcome)
+    left = max(study.planned - count, 0)
+    told = [f"{f'{count} of {study.planned}' if left else count} points: {counts[Outcome.GOOD]} came out well"]
     if counts[Outcome.FAILED]:
         told.append(f"{counts[Outcome.FAILED]} failed or can't be trusted")
     if counts[Outcome.NOT_RUN]:
         told.append(f"{counts[Outcome.NOT_RUN]} not run")
-    kind = "bad" if counts[Outcome.FAILED] else "waiting" if counts[Outcome.NOT_RUN] else "good"
+    kind = "bad" if counts[Outcome.FAILED] else "waiting" if counts[Outcome.NOT_RUN] or left else "good"
     notes = "".join(f'<p class="hint">{html.escape(note)}</p>' for note in study.notes)
     return f'<p class="status {kind}">{", ".join(told)}</p>{notes}'
 

@@ -52,7 +52,7 @@ def page_of(folder: Path, *, title: str = "", figures: bool = True) -> StudyPage
     shown, notes = _metrics_shown(about, points)
     elsewhere = _elsewhere(folder, points)
     if not points.whole:
-        notes.append(f"The sweep did not come to its end: of {about['points']} points these were done.")
+        notes.append("The sweep did not come to its end; these points were done.")
     curves = read_curves(folder, points.ids, about["metrics"], points.whole) if points.ids else None
     if points.ids and curves is None:
         notes.append("The page has no curves: there are none, or too many for a page; sweep.nc has what there is.")
@@ -72,6 +72,7 @@ def page_of(folder: Path, *, title: str = "", figures: bool = True) -> StudyPage
         command=_command(about),
         values=about.get("run", {}).get("values", {}),
         first=_first(about, points),
+        planned=about["points"],
         notes=notes,
         figures=_figures(folder, about) if figures else {},
     )

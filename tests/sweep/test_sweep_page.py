@@ -13,7 +13,7 @@ import pytest
 from gw_exudyn.errors import StorageError
 from gw_exudyn.metrics import metrics
 from gw_exudyn.report.curves import chosen
-from gw_exudyn.report.study_page import Kept, Outcome
+from gw_exudyn.report.study_page import Kept, Outcome, study_page
 from gw_exudyn.scenario import load_scenario
 from gw_exudyn.simulation import simulate
 from gw_exudyn.sweep import load_study
@@ -133,12 +133,21 @@ def test_a_sweep_that_was_killed_tells_what_it_got_to(folder):
     (folder / "sweep.json").write_text(json.dumps(about))
     shutil.rmtree(folder / "points" / whole.columns[1].values[0])
     page = page_of(folder)
-    assert "of 4 points these were done" in page.notes[0]
+    assert "did not come to its end" in page.notes[0]
+    assert '<p class="status waiting">3 of 4 points: 3 came out well</p>' in study_page(page)
     # By their parameters: the first friction of the first diameter is gone, and 0.1 stands before 0.4.
     assert column(page, "contact.friction_coefficient").values.tolist() == [0.1, 0.1, 0.4]
     forces, rows = column(whole, "push force max").values, [1, 3, 2]
     assert column(page, "push force max").values.tolist() == forces[rows].tolist()
     assert np.allclose(page.curves.series["push_force"], whole.curves.series["push_force"][rows])
+
+
+def test_a_sweep_without_a_point_has_a_page(folder):
+    about = json.loads((folder / "sweep.json").read_text())
+    del about["summary"]
+    (folder / "sweep.json").write_text(json.dumps(about))
+    shutil.rmtree(folder / "points")
+    assert '<p class="status waiting">0 of 4 points: 0 came out well</p>' in study_page(page_of(folder))
 
 
 def test_a_folder_of_something_else_and_a_damaged_table_are_refused(folder, tmp_path):
