@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 RUNS := results/runs
 WIRES := phantom-universal phantom-amplatz
 BOTH := $(WIRES:%=$(RUNS)/%)
-STUDY := fig4 fig6 fig8 fig9 table2 reach pull_back constant_force uncertainty findings
+STUDY := fig4 fig6 fig8 fig9 table2 reach pull_back constant_force uncertainty findings page
 
 .PHONY: help run figure paper test verify mutate lint format kernels wrappers clean
 .DELETE_ON_ERROR:
@@ -14,7 +14,7 @@ STUDY := fig4 fig6 fig8 fig9 table2 reach pull_back constant_force uncertainty f
 help:
 	@echo "make run      simulate both wires in the phantom, draw them side by side and compare them"
 	@echo "make figure   run both and draw docs/figures/phantom.png, the figure of the README"
-	@echo "make paper    rerun the study of Sharei et al. 2019: every figure and table into results/paper"
+	@echo "make paper    rerun the study of Sharei et al. 2019: every figure and table into results/paper/index.html"
 	@echo "make test     run the test suite"
 	@echo "make verify   show and write the evidence that the physics is right"
 	@echo "make mutate   make errors in the physics on purpose, and see that tests notice each"

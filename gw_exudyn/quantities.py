@@ -290,7 +290,7 @@ def display(name: str, value: float, digits: int = 3) -> str:
     mN".
     """
     unit, factor = display_unit(name, value, _TOO_LONG_IN_TEXT)
-    number = f"{value * factor:.{digits}g}"
+    number = f"{value * factor + 0.0:.{digits}g}"  # no number reads as -0
     if "e+" in number:
         number = f"{value * factor:.0f}"
     return number if unit == "1" else f"{number} {plain(unit)}"

@@ -1,12 +1,11 @@
 """The motion of a run, packed small: what the player of the page reads.
 
 Positions are 16-bit integers over the box that holds them, which is a thousandth of a millimetre in a vessel of 60 mm;
-everything else is 32-bit. Arrays travel as base64, little-endian.
+everything else is 32-bit.
 """
 
 from __future__ import annotations
 
-import base64
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,6 +13,7 @@ import numpy as np
 from gw_exudyn.plots.contact_vectors import contact_vectors
 from gw_exudyn.plots.scene import centreline
 from gw_exudyn.quantities import QUANTITIES, display_unit, plain
+from gw_exudyn.report.packing import base64_text, floats, spread
 
 if TYPE_CHECKING:
     from gw_exudyn.result import Floats, Result
@@ -24,15 +24,15 @@ READINGS = ("insertion_depth", "tip_x", "tip_y", "tip_angle", "contacts", *CURVE
 
 MOST_FRAMES = 600
 MOST_NODES = 201
-_LEVELS = 65534
-_NO_NUMBER = 65535
+LEVELS = 65534
+NO_NUMBER = 65535
 """Stands for a coordinate that is not finite."""
 
 
-def packed_run(result: Result) -> dict[str, Any]:
+def packed_run(result: Result, most_frames: int = MOST_FRAMES, most_nodes: int = MOST_NODES) -> dict[str, Any]:
     """One run for the player. Lengths are in millimetres, forces in newtons, time in seconds."""
-    frames = _spread(len(result.time), MOST_FRAMES)
-    nodes = _spread(result.values("node_x").shape[1], MOST_NODES)
+    frames = spread(len(result.time), most_frames)
+    nodes = spread(result.values("node_x").shape[1], most_nodes)
     course = np.stack([centreline(result, int(i))[nodes] for i in frames]) * 1e3
     low, high = _box(course)
     return {
@@ -40,13 +40,13 @@ def packed_run(result: Result) -> dict[str, Any]:
         "diameter": result.scenario.wire.diameter * 1e3,
         "status": result.status.sentence(),
         "trusted": result.status.status.trusted,
-        "time": _floats(result.time[frames]),
+        "time": floats(result.time[frames]),
         "nodes": len(nodes),
         "box": [*low, *high],
-        "course": _base64(_quantised(course, low, high), "<u2"),
+        "course": base64_text(_quantised(course, low, high), "<u2"),
         "walls": [(line * 1e3).round(5).tolist() for line in result.vessel_outline],
         "catheter": [(line * 1e3).round(5).tolist() for line in result.catheter_outline],
-        "scalars": {name: _floats(result.values(name)[frames]) for name in READINGS},
+        "scalars": {name: floats(result.values(name)[frames]) for name in READINGS},
         **_contacts(result, frames),
     }
 
@@ -72,12 +72,7 @@ def _contacts(result: Result, frames: Floats) -> dict[str, Any]:
         points, forces, owners = contact_vectors(result, int(frame))
         rows.append(np.column_stack([points * 1e3, forces, owners]))
         starts.append(starts[-1] + len(points))
-    return {"starts": starts, "contacts": _floats(np.concatenate(rows).ravel())}
-
-
-def _spread(count: int, most: int) -> Floats:
-    """Indices of at most `most` of `count`, evenly, first and last among them."""
-    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(int))
+    return {"starts": starts, "contacts": floats(np.concatenate(rows).ravel())}
 
 
 def _box(course: Floats) -> tuple[Floats, Floats]:
@@ -91,12 +86,4 @@ def _box(course: Floats) -> tuple[Floats, Floats]:
 def _quantised(course: Floats, low: Floats, high: Floats) -> Floats:
     share = (course - low) / np.maximum(high - low, 1e-9)
     known = np.isfinite(share).all(axis=-1, keepdims=True)
-    return np.where(known, np.nan_to_num(share) * _LEVELS, _NO_NUMBER).round()
-
-
-def _floats(values: Floats) -> str:
-    return _base64(values, "<f4")
-
-
-def _base64(values: Floats, kind: str) -> str:
-    return base64.b64encode(np.ascontiguousarray(values, dtype=kind).tobytes()).decode("ascii")
+    return np.where(known, np.nan_to_num(share) * LEVELS, NO_NUMBER).round()

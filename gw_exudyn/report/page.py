@@ -1,26 +1,26 @@
-"""The page: template, style and script put together with the data of the runs."""
+"""The page of a run, or of a few."""
 
 from __future__ import annotations
 
-import base64
 import html
 import json
 from collections.abc import Mapping, Sequence
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gw_exudyn.comparison import differences
-from gw_exudyn.errors import StorageError, UsageError
+from gw_exudyn.errors import UsageError
 from gw_exudyn.metrics import Metric, metrics
 from gw_exudyn.plots.save import render_figures
 from gw_exudyn.quantities import number_text
 from gw_exudyn.report.pack import packed_run, scalars_table
+from gw_exudyn.report.parts import filled, picture, save_page, table
 
 if TYPE_CHECKING:
     from gw_exudyn.result import Result
 
 MOST_RUNS = 4
+SCRIPTS = ("base.js", "data.js", "scene.js", "chart.js", "player.js", "run.js")
 _FIGURES = ("insertion", "forces", "tip_path", "energy", "contact_map")
 
 
@@ -29,54 +29,27 @@ def report_page(results: Sequence[Result], *, title: str = "", figures: bool = T
     if not 1 <= len(results) <= MOST_RUNS:
         raise UsageError(f"a report shows 1 to {MOST_RUNS} runs, not {len(results)}; make several reports")
     names = _names(results)
-    data = {"runs": [packed_run(result) | {"name": name} for result, name in zip(results, names, strict=True)]}
+    runs = [packed_run(result) | {"name": name} for result, name in zip(results, names, strict=True)]
     parts = {
-        "TITLE": html.escape(title or " and ".join(names)),
-        "STYLE": _asset("style.css"),
-        "SCRIPT": "\n".join(_asset(name) for name in ("data.js", "scene.js", "chart.js", "player.js")),
-        "DATA": _script_safe(json.dumps(data | {"scalars": scalars_table()}, allow_nan=False)),
         "STATUS": "".join(_status(result, name) for result, name in zip(results, names, strict=True)),
         "METRICS": _metrics(results, names),
         "SCENARIOS": _scenarios(results, names),
         "FIGURES": "".join(_figures(r, n) for r, n in zip(results, names, strict=True)) if figures else "",
         "PROVENANCE": _provenance(results, names),
     }
-    page = _asset("page.html")
-    for name, text in parts.items():
-        page = page.replace(f"<!--{name}-->", text)
-    return page
+    data = {"runs": runs, "scalars": scalars_table()}
+    return filled("run.html", SCRIPTS, title or " and ".join(names), data, parts)
 
 
 def save_report(results: Sequence[Result], path: str | Path, *, title: str = "", figures: bool = True) -> Path:
-    """Write the page and return its path; it appears whole or not at all.
-
-    Raises StorageError where the disk refuses.
-    """
-    from gw_exudyn.storage.run_folder import write_file
-
-    target = Path(path)
-    content = report_page(results, title=title, figures=figures).encode()
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        write_file(target, content)
-    except OSError as error:
-        raise StorageError(f"{target}: can't be written: {error.strerror or error}; name another place") from error
-    return target
+    """Write the page and return its path. Raises StorageError where the disk refuses."""
+    return save_page(report_page(results, title=title, figures=figures), path)
 
 
 def _names(results: Sequence[Result]) -> list[str]:
     """Names of the runs, numbered where two have the same."""
     plain = [result.scenario.name for result in results]
     return [f"{name} ({i + 1})" if plain.count(name) > 1 else name for i, name in enumerate(plain)]
-
-
-def _asset(name: str) -> str:
-    return files("gw_exudyn.report").joinpath("assets", name).read_text(encoding="utf-8")
-
-
-def _script_safe(text: str) -> str:
-    """JSON that may stand inside a script element."""
-    return text.replace("</", "<\\/")
 
 
 def _status(result: Result, name: str) -> str:
@@ -90,7 +63,7 @@ def _metrics(results: Sequence[Result], names: Sequence[str]) -> str:
     # In the order of the run that has most of them; runs in other vessels have other branches.
     order = dict.fromkeys(key for one in sorted(found, key=len, reverse=True) for key in one)
     rows = [[key, *(_metric_text(key, one.get(key)) for one in found), known[key].meaning] for key in order]
-    return _table(["metric", *names, "meaning"], rows)
+    return table(["metric", *names, "meaning"], rows)
 
 
 def _metric_text(name: str, metric: Metric | None) -> str:
@@ -108,7 +81,7 @@ def _scenarios(results: Sequence[Result], names: Sequence[str]) -> str:
         for change in differences(plain[0], other):
             row = others.setdefault(change.path, [change.first] * len(plain))
             row[number + 1] = change.second
-    changed = _table(["differs", *names], [[path, *map(_plain, row)] for path, row in others.items()]) if others else ""
+    changed = table(["differs", *names], [[path, *map(_plain, row)] for path, row in others.items()]) if others else ""
     inputs = "".join(
         f"<details><summary>inputs of {html.escape(name)}</summary>"
         f"<pre>{html.escape(json.dumps(one, indent=1, ensure_ascii=False))}</pre></details>"
@@ -119,11 +92,7 @@ def _scenarios(results: Sequence[Result], names: Sequence[str]) -> str:
 
 def _figures(result: Result, name: str) -> str:
     pictures = render_figures(result, _FIGURES, ("png",))
-    shown = "".join(
-        f'<figure><img alt="{html.escape(name)}: {file}" loading="lazy" '
-        f'src="data:image/png;base64,{base64.b64encode(content).decode("ascii")}"></figure>'
-        for file, content in pictures.items()
-    )
+    shown = "".join(picture(content, f"{name}: {file}") for file, content in pictures.items())
     return f"<details><summary>figures of {html.escape(name)}</summary>{shown}</details>"
 
 
@@ -133,15 +102,7 @@ def _provenance(results: Sequence[Result], names: Sequence[str]) -> str:
         versions: Mapping[str, str] = result.provenance.get("versions", {})
         command = str(result.provenance.get("command", ""))
         rows.append([name, command or "-", ", ".join(f"{key} {value}" for key, value in versions.items())])
-    return _table(["run", "command", "versions"], rows)
-
-
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    def cells(row: Sequence[str], tag: str) -> str:
-        return "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in row)
-
-    body = "".join(f"<tr>{cells(row, 'td')}</tr>" for row in rows)
-    return f'<div class="wide"><table><thead><tr>{cells(head, "th")}</tr></thead><tbody>{body}</tbody></table></div>'
+    return table(["run", "command", "versions"], rows)
 
 
 def _plain(value: Any) -> str:

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-import json
+import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
 
+from gw_exudyn.errors import StorageError
 from gw_exudyn.storage.manifest import MANIFEST
 from gw_exudyn.storage.netcdf import DATA
 from gw_exudyn.sweep.dataset import DATASET, write_dataset
 from gw_exudyn.sweep.design import FOR_INDICES
 from gw_exudyn.sweep.folder import SweepFolder
+from gw_exudyn.sweep.page import EXTREMES, run_id
 from gw_exudyn.sweep.run import Options, Plan, Summary
 from gw_exudyn.sweep.study import Study
 from gw_exudyn.sweep.table import TABLE, Table, write_table
@@ -46,29 +48,35 @@ def write_outputs(
         write_figures(study, place, table, runs, summary)
 
 
+def write_page(folder: Path, summary: Summary) -> None:
+    """Write the page of a folder in which all else is written, and name it in `summary`. One that can't be made is a
+    warning.
+    """
+    from gw_exudyn.sweep.page import save_study_page
+
+    try:
+        summary.files.append(save_study_page(folder))
+    except StorageError:
+        raise
+    except Exception as error:  # a night of computing is not given up for a page
+        told = f"the page could not be made ({type(error).__name__}: {error}); the data is complete"
+        warnings.warn(told, RuntimeWarning, stacklevel=2)
+
+
 def _best_and_worst(study: Study, plan: Plan, place: SweepFolder, table: Table, run_whole: RunWhole) -> dict[str, Path]:
     """Run folders of the points with the smallest and the largest value of the study's first metric."""
     values = np.where(table.good, table.metrics[study.metrics[0]], np.nan)
     if not np.isfinite(values).any():
         return {}
     runs: dict[str, Path] = {}
-    for name, point in (("best", int(np.nanargmin(values))), ("worst", int(np.nanargmax(values)))):
+    for name, point in zip(EXTREMES, (int(np.nanargmin(values)), int(np.nanargmax(values))), strict=True):
         folder = place.point(plan.ids[point])
         if not (folder / DATA).is_file():
             folder = place.path / name
-            if _id_of(folder) != plan.ids[point]:
+            if run_id(folder) != plan.ids[point]:
                 files = run_whole(point)
                 if MANIFEST not in files:
                     continue
                 folder = place.add_run(name, files)
         runs[name] = folder
     return runs
-
-
-def _id_of(folder: Path) -> str | None:
-    """The id of the point whose run a folder holds."""
-    try:
-        found = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))["provenance"]["point"]["id"]
-    except (OSError, ValueError, KeyError, TypeError):
-        return None
-    return str(found)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gw_exudyn.plots.style import BLUE, ORANGE, new_figure, tidy
-from gw_exudyn.sweep.plot_scales import scaled
+from gw_exudyn.sweep.axes import Axis
+from gw_exudyn.sweep.plot_scales import axis_name, scaled
 from gw_exudyn.sweep.sensitivity import Index, indices
 from gw_exudyn.sweep.study import Study
 from gw_exudyn.sweep.table import Table
@@ -38,7 +40,7 @@ def plot_indices(study: Study, table: Table) -> Figure | None:
     panels = figure.subplots(1, len(found), sharey=True, squeeze=False)[0]
     panels[0].invert_yaxis()  # for all panels: they share the axis
     for axes, (metric, several) in zip(panels, found.items(), strict=True):
-        _bars(axes, metric, several, [axis.path for axis in study.design.axes])
+        _bars(axes, metric, several, study.design.axes)
     handles, labels = panels[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=2, fontsize=9, frameon=False)
     title = f"{study.name}: sensitivity, bars of 95 % confidence"
@@ -46,14 +48,15 @@ def plot_indices(study: Study, table: Table) -> Figure | None:
     return figure
 
 
-def _bars(axes: Any, metric: str, several: list[Index], paths: list[str]) -> None:
+def _bars(axes: Any, metric: str, several: list[Index], parameters: Sequence[Axis]) -> None:
     tidy(axes)
+    paths = [parameter.path for parameter in parameters]
     names = list(dict.fromkeys(one.name for one in several))
     text, values = scaled(metric.replace("_", " "), several[0].unit, np.array([one.value for one in several]))
     factor = values / np.array([one.value or 1.0 for one in several])
     for number, name in enumerate(names):
         mine = {one.path: (one, k) for one, k in zip(several, factor, strict=True) if one.name == name}
-        place = np.arange(len(paths)) + 0.2 - 0.4 * number
+        place = np.arange(len(paths)) - 0.2 + 0.4 * number  # the axis points down: the first lies above
         size = [mine[path][0].value * (mine[path][1] or 1.0) for path in paths]
         halves = [mine[path][0].confidence * (mine[path][1] or 1.0) for path in paths]
         bars = None if np.isnan(halves).all() else halves
@@ -61,6 +64,6 @@ def _bars(axes: Any, metric: str, several: list[Index], paths: list[str]) -> Non
         axes.barh(
             place, size, 0.38, xerr=bars, color=colour, label=_WORDS[name], error_kw={"linewidth": 1, "capsize": 3}
         )
-    axes.set_yticks(range(len(paths)), paths, fontsize=9)
+    axes.set_yticks(range(len(paths)), [axis_name(parameter) for parameter in parameters], fontsize=9)
     axes.axvline(0.0, color="black", linewidth=0.6)
     axes.set_xlabel(f"share of the variance of {text}" if "S1" in names else text)

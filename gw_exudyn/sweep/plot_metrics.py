@@ -10,7 +10,7 @@ import numpy as np
 from gw_exudyn.plots.style import BLUE, NOTE_COLOUR, VERMILLION, new_figure, tidy
 from gw_exudyn.result import Floats
 from gw_exudyn.sweep.axes import Axis
-from gw_exudyn.sweep.plot_scales import COLOUR_MAP, axis_scaled, metric_scaled
+from gw_exudyn.sweep.plot_scales import COLOUR_MAP, axis_scaled, metric_scaled, short
 from gw_exudyn.sweep.study import Study
 from gw_exudyn.sweep.table import Table
 
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 _MOST_PANELS = 4
 _MOST_PARAMETERS = 8
 _MOST_TEXTS = 100  # cells of a heat map that get their number written in
+_FAR = 200  # ratio of largest to smallest value from which an axis is logarithmic
 _FAILED = "failed"
 
 
@@ -42,6 +43,8 @@ def plot_response(study: Study, table: Table) -> Figure:
         label, values = metric_scaled(study, name, good_values(study, table, name))
         line = "o" if study.mode == "sample" or axis.unit is None else "o-"
         axes.plot(x[order], values[order], line, color=BLUE, markersize=4, linewidth=1.3)
+        if _far_apart(values):
+            axes.set_yscale("log")
         _mark_failed(axes, x[~table.good])
         axes.set_ylabel(label)
     panels[-1].set_xlabel(text)
@@ -49,6 +52,12 @@ def plot_response(study: Study, table: Table) -> Figure:
         panels[-1].set_xticks(np.unique(x), list(dict.fromkeys(words)), rotation=20, ha="right")
     _title(figure, study)
     return figure
+
+
+def _far_apart(values: Floats) -> bool:
+    """Whether the smaller values would all lie on the axis."""
+    known = values[np.isfinite(values)]
+    return bool(len(known) and known.min() > 0 and known.max() > _FAR * known.min())
 
 
 def _mark_failed(axes: Axes, x: Floats) -> None:
@@ -87,7 +96,7 @@ def _write_cells(axes: Axes, values: Floats, image: Any) -> None:
         elif values.size <= _MOST_TEXTS:
             dark = image.norm(value) < 0.5
             axes.text(
-                column, row, f"{value:.3g}", color="white" if dark else "black", ha="center", va="center", fontsize=8
+                column, row, short(value), color="white" if dark else "black", ha="center", va="center", fontsize=8
             )
     if not np.isfinite(values).all():
         axes.set_title("x: failed", fontsize=9, color=NOTE_COLOUR, loc="right")

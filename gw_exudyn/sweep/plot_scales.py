@@ -18,6 +18,12 @@ COLOUR_MAP = "cividis"
 """Told apart with any colour vision, and in grey."""
 
 
+def short(value: float) -> str:
+    """Three digits, and as many before the point as there are: `2550`, not `2.55e+03`."""
+    number = f"{value:.3g}"
+    return f"{value:.0f}" if "e+" in number else number
+
+
 def scaled(text: str, unit: str, values: Floats) -> tuple[str, Floats]:
     """Label with unit, and the values in it, of something in SI."""
     like = LIKE.get(unit)
@@ -40,7 +46,7 @@ def metric_words(study: Study, name: str, value: float) -> str:
 def value_words(unit: str, value: float) -> str:
     """A value in SI in words: `20.7 mN`."""
     shown_unit, factor = shown(LIKE[unit], np.array([value])) if unit in LIKE else (unit, 1.0)
-    number = f"{value * factor:.3g}"
+    number = short(value * factor)
     return number if shown_unit == "1" else f"{number} {plain(shown_unit)}"
 
 
@@ -53,6 +59,6 @@ def axis_scaled(axis: Axis, labels: list[float | str]) -> tuple[str, Floats, lis
     """Label, numbers and words of a parameter's coordinates; words are numbered in the order of their first sight."""
     if axis.unit is not None:
         text, values = scaled(axis_name(axis), axis.unit, np.array(labels, dtype=float))
-        return text, values, [f"{value:.3g}" for value in values]
+        return text, values, [short(value) for value in values]
     words = list(dict.fromkeys([str(label) for label in axis.labels] or [str(label) for label in labels]))
     return axis_name(axis), np.array([float(words.index(str(label))) for label in labels]), [str(x) for x in labels]

@@ -14,6 +14,7 @@ from gw_exudyn.storage.netcdf import DATA
 from gw_exudyn.sweep.folder import POINTS, SweepFolder, read_point
 from gw_exudyn.sweep.identity import Maker, decisive, this_maker
 from gw_exudyn.sweep.pool import Pool, pool
+from gw_exudyn.sweep.rerun import rerun
 from gw_exudyn.sweep.runner import SIMULATION, Outcome, Task
 from gw_exudyn.sweep.study import Study
 from gw_exudyn.sweep.study_problems import ProblemList
@@ -180,10 +181,12 @@ def run_sweep(
         sweep = Running(study, plan, options, place, progress, report, should_stop)
         summary.interrupted = not sweep.run(missing)
         summary.run = progress.done
-        from gw_exudyn.sweep.outputs import write_outputs
+        from gw_exudyn.sweep.outputs import write_outputs, write_page
 
         write_outputs(study, plan, options, place, summary, sweep.run_whole if not summary.interrupted else None)
-        place.write_about({**_about(study, plan, options), "summary": _counts(summary)})
+        files = [file.relative_to(folder).as_posix() for file in summary.files]
+        place.write_about({**_about(study, plan, options), "summary": _counts(summary), "files": files})
+        write_page(folder, summary)
     return summary
 
 
@@ -303,6 +306,7 @@ def _about(study: Study, plan: Plan, options: Options) -> dict[str, Any]:
         "command": options.command,
         "versions": dict(plan.maker.versions),
         "code": plan.maker.code,
+        "run": rerun(study),
     }
 
 

@@ -55,7 +55,7 @@ class Study:
         """The scenario of a point. Raises ScenarioError, with the places in the study file of what is wrong."""
         try:
             given = {**self.fixed, **self.design.values(point)}
-            overrides = {path: self._beside(path, value) for path, value in given.items()}
+            overrides = {path: self.beside(path, value) for path, value in given.items()}
             return scenario_from_source(self._source, overrides, self._folder)
         except ScenarioError as error:
             raise ScenarioError(self.placed(error.problems, point)) from None
@@ -65,7 +65,7 @@ class Study:
         """What a run of the first point tells, by name: units and meanings of the study's metrics."""
         return metric_table(self.scenario(0))
 
-    def _beside(self, path: str, value: Any) -> Any:
+    def beside(self, path: str, value: Any) -> Any:
         """A file that the study names, beside the study; one that is not there is looked for beside the base."""
         if path.rpartition(".")[2] == "file" and isinstance(value, str) and (self.file.parent / value).is_file():
             return str((self.file.parent / value).absolute())

@@ -25,3 +25,25 @@ def test_a_page_that_cannot_be_written_ends_with_7(gw, solver):
     outcome = gw("report", run, "-o", "taken/page.html", "--no-figures")
     assert outcome.code == 7
     assert "name another place" in outcome.err
+
+
+STUDY = """base: straight
+set: {wire.segments: 5, solver.step: 0.5 s, output.interval: 0.5 s, drive.distance: 4 mm}
+vary: {contact.friction_coefficient: [0.1, 0.2]}
+"""
+
+
+def test_a_page_of_a_sweep_lies_in_its_folder_and_stands_alone(gw, solver):
+    Path("two.yaml").write_text(STUDY)
+    folder = gw("sweep", "two.yaml", "-q", "--jobs", "1").out.strip()
+    whole = Path(folder, "report.html")
+    figures = whole.read_text(encoding="utf-8").count("data:image/png")
+    assert figures == len(list(Path(folder, "figures").glob("*.png"))) > 0
+    outcome = gw("report", folder, "--no-figures", "--title", "Two & a half", "-o", "page.html")
+    assert (outcome.code, outcome.out.strip()) == (0, "page.html")
+    page = Path("page.html").read_text(encoding="utf-8")
+    assert "<title>Two &amp; a half</title>" in page
+    assert "data:image/png" not in page
+    outcome = gw("report", folder, folder)
+    assert outcome.code == 2
+    assert "alone" in outcome.err

@@ -42,7 +42,7 @@ def test_a_sweep_tells_its_folder_and_its_summary(gw, study):
     assert done.code == 0, done.err
     told = json.loads(done.out)
     assert (told["points"], told["unique"], told["run"], told["completed"], told["failed"]) == (4, 2, 2, 2, 0)
-    assert [Path(file).name for file in told["files"]] == ["sweep.csv", "sweep.nc"]
+    assert [Path(file).name for file in told["files"]] == ["sweep.csv", "sweep.nc", "report.html"]
     assert all(Path(file).is_file() for file in told["files"])
     assert "2 of 2 done, 0 failed" in done.err
     about = json.loads(Path(told["folder"], "sweep.json").read_text())

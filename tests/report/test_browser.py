@@ -2,41 +2,17 @@
 
 from __future__ import annotations
 
-import shutil
-
 import pytest
 from synthetic import StandInWire, made_up_result
 
 from gw_exudyn.report import save_report
 
-sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
-
-FLAGS = ["--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking", "--disable-sync"]
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with sync_api.sync_playwright() as play:
-        found = play.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
-        yield found
-        found.close()
-
 
 @pytest.fixture
-def page(browser, tmp_path):
-    """The page of two runs, from a file, offline; whatever it complains of fails the test."""
+def page(opened, tmp_path):
+    """The page of two runs."""
     runs = [made_up_result(segments=60), made_up_result("other", wire=StandInWire(0.89e-3, "amplatz-super-stiff"))]
-    file = save_report(runs, tmp_path / "report.html", figures=False)
-    context = browser.new_context(viewport={"width": 1000, "height": 1200}, has_touch=True, offline=True)
-    opened, complaints = context.new_page(), []
-    opened.on("console", lambda message: complaints.append(message.text))
-    opened.on("pageerror", lambda error: complaints.append(str(error)))
-    opened.goto(file.as_uri())
-    yield opened
-    context.close()
-    assert complaints == []
+    return opened(save_report(runs, tmp_path / "report.html", figures=False))
 
 
 def clock(page):
@@ -131,3 +107,12 @@ def test_a_touch_in_the_curve_scrubs(page):
     box = page.locator("#chart").bounding_box()
     page.touchscreen.tap(box["x"] + 0.5 * box["width"], box["y"] + 80)
     assert clock(page) > 0
+
+
+def test_a_thin_wire_is_drawn_over_a_thick_one_on_its_way(page):
+    drawn = page.evaluate(
+        "() => { const found = [], draw = scene.drawWire; scene.drawWire = run => found.push(run.diameter);"
+        " scene.draw(0); scene.drawWire = draw; return found; }"
+    )
+    assert drawn == sorted(drawn, reverse=True)
+    assert drawn[0] > drawn[-1]

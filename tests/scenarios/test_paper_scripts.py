@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import importlib
+import re
+import shutil
 import sys
 from pathlib import Path
 
 import pytest
 
 from gw_exudyn import load_scenario
+from gw_exudyn.report.document import inline
 
 FOLDER = Path(__file__).resolve().parents[2] / "scenarios" / "paper"
 WRITES = {
@@ -22,8 +25,9 @@ WRITES = {
     "constant_force": {"constant-force.csv", "constant-force-summary.csv", "constant-force.png"},
     "uncertainty": {"uncertainty.csv", "uncertainty-band.csv", "uncertainty-indices.csv", "uncertainty.png"},
     "findings": {"findings.csv", "findings.md", "causes.csv", "table2-times.csv"},
+    "page": {"index.html"},
 }
-"""In the order in which they run: the last one reads what the others wrote."""
+"""In the order in which they run: the last two read what the others wrote."""
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +58,7 @@ def test_every_script_is_tested_and_in_the_makefile():
 def test_it_runs_and_writes_its_files(study, out, script):
     if script == "uncertainty":
         pytest.importorskip("SALib")
-    elif script == "findings" and not (out / "fig4.csv").exists():
+    elif script in ("findings", "page") and not (out / "fig4.csv").exists():
         pytest.skip("reads what the other scripts wrote; run them all")
     study(script).main(out, quick=True)
     assert {path.name for path in out.iterdir()} >= WRITES[script]
@@ -88,3 +92,22 @@ def test_a_finding_is_told_as_it_is(study):
     assert finding("a", "b", "c", held, "1").verdict == "in part: best, high; not low"
     assert finding("a", "b", "c", dict.fromkeys(held, False), "1").verdict == "does not hold"
     assert finding("a", "b", "c", dict.fromkeys(held, True), "1", True).verdict == "holds (by construction)"
+
+
+def test_the_page_has_every_figure_table_and_statement_and_is_made_of_them(study, tmp_path):
+    page = study("page")
+    shutil.copytree(page.shared.OUT, tmp_path, dirs_exist_ok=True)
+    committed = (tmp_path / "index.html").read_bytes()
+    page.main(tmp_path)
+    assert (tmp_path / "index.html").read_bytes() == committed, "make paper, or scenarios/paper/page.py"
+    text = committed.decode()
+    kept = {path.name for path in tmp_path.iterdir()} - {"index.html", "findings.md"}
+    missing = {name for name in kept if f'"{name}"' not in text}
+    assert missing == set()
+    links = set(re.findall(r'(?:href|src)="(?!#|data:)([^"]+)"', text))
+    assert links - kept == {"findings.md"}
+    told = page.statements(page.WORDS.read_text(encoding="utf-8"))
+    assert set(told) == set(WRITES) - {"findings", "page"}
+    for texts in told.values():
+        for _, words in texts:
+            assert inline(words) in text

@@ -33,7 +33,7 @@ MAY_IMPORT = {
     "fmi": ABOVE_RESULT | {"native", "model", "engine", "simulation"},
     "verification": ABOVE_RESULT
     | {"metrics", "comparison", "plots", "storage", "model", "engine", "trust", "simulation"},
-    "sweep": ABOVE_RESULT | {"metrics", "plots", "storage", "model", "engine", "simulation", "fmi"},
+    "sweep": ABOVE_RESULT | {"metrics", "plots", "report", "storage", "model", "engine", "simulation", "fmi"},
     "calibration": ABOVE_RESULT | {"comparison", "measured", "plots", "storage", "model", "sweep"},
 }
 """What each place may import of ours, besides itself. The command line and the package's own face may import all."""

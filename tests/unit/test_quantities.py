@@ -75,6 +75,7 @@ def test_long_numbers_move_on_to_a_coarser_unit(name, largest, unit, factor):
     [
         ("push_force", 0.0207, "20.7 mN"),
         ("push_force", -0.0207, "-20.7 mN"),
+        ("push_force", -0.0, "0 mN"),
         ("push_force", 1.19, "1.19 N"),
         ("wall_force_max", 12345.0, "12345 N"),
         ("insertion_depth", 0.08, "80 mm"),

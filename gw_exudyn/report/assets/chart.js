@@ -1,18 +1,17 @@
 // One curve of all runs over time or depth, with a cursor; values under the pointer.
-const MARGIN = { left: 62, right: 14, top: 14, bottom: 34 };
+const MARGIN = { left: 62, right: 14, top: 24, bottom: 34 };
 
 class Chart {
   constructor() {
-    Object.assign(this, canvasOf("chart"));
+    Object.assign(this, canvasOf($("chart")));
     this.name = "push_force";
     this.against = "time";
-    this.hover = null;
   }
 
   // Limits [low, high] of a scalar over all shown runs, in its display unit.
   limits(name) {
     let [low, high] = [Infinity, -Infinity];
-    for (const run of RUNS) if (run.shown) for (const value of run.scalars[name]) if (Number.isFinite(value)) {
+    for (const run of RUNS) if (run.shown) for (const value of seriesOf(run, name)) if (Number.isFinite(value)) {
       low = Math.min(low, value); high = Math.max(high, value);
     }
     const factor = DATA.scalars[name].factor;
@@ -46,29 +45,24 @@ class Chart {
   }
 
   axes(maps) {
-    const pen = this.pen, ticks = (low, high) => {
-      const step = niceStep((high - low) / 5), out = [];
-      for (let value = Math.ceil(low / step) * step; value <= high + 1e-9 * step; value += step) out.push(Number(value.toPrecision(12)));
-      return out;
-    };
+    const pen = this.pen;
     pen.lineWidth = 1; pen.setLineDash([]);
     for (const value of ticks(maps.y0, maps.y1)) {
       pen.strokeStyle = value === 0 ? "#666" : "#e3e3e3"; pen.fillStyle = "#404040"; pen.textAlign = "right"; pen.textBaseline = "middle";
       pen.beginPath(); pen.moveTo(MARGIN.left, maps.y(value)); pen.lineTo(this.element.clientWidth - MARGIN.right, maps.y(value)); pen.stroke();
-      pen.fillText(String(Number(value.toPrecision(6))), MARGIN.left - 6, maps.y(value));
+      pen.fillText(numberText(value, 6), MARGIN.left - 6, maps.y(value));
     }
     pen.textAlign = "center"; pen.textBaseline = "top";
     const bottom = this.element.clientHeight - MARGIN.bottom;
-    for (const value of ticks(maps.x0, maps.x1)) pen.fillText(String(value), maps.x(value), bottom + 4);
-    const words = name => { const scalar = DATA.scalars[name]; return scalar.label + (scalar.unit ? ` [${scalar.unit}]` : ""); };
-    pen.fillText(words(this.against), this.element.clientWidth / 2, bottom + 18);
+    for (const value of ticks(maps.x0, maps.x1)) pen.fillText(numberText(value, 6), maps.x(value), bottom + 4);
+    pen.fillText(headText(DATA.scalars[this.against]), this.element.clientWidth / 2, bottom + 18);
     pen.textAlign = "left";
-    pen.fillText(words(this.name), 4, 1);
+    pen.fillText(headText(DATA.scalars[this.name]), 4, 3);
     pen.textBaseline = "alphabetic";
   }
 
   curve(run, maps) {
-    const pen = this.pen, xs = run.scalars[this.against], ys = run.scalars[this.name];
+    const pen = this.pen, xs = seriesOf(run, this.against), ys = seriesOf(run, this.name);
     const fx = DATA.scalars[this.against].factor, fy = DATA.scalars[this.name].factor;
     pen.strokeStyle = run.colour; pen.lineWidth = 1.7; pen.setLineDash(run.dash);
     pen.beginPath();
@@ -83,13 +77,13 @@ class Chart {
 
   cursor(run, time, maps) {
     const pen = this.pen;
-    const where = this.against === "time" ? time * DATA.scalars.time.factor : run.scalars[this.against][frameAt(run, time)] * DATA.scalars[this.against].factor;
+    const where = this.against === "time" ? time * DATA.scalars.time.factor : seriesOf(run, this.against)[frameAt(run, time)] * DATA.scalars[this.against].factor;
     pen.strokeStyle = "#000"; pen.lineWidth = 1;
     pen.beginPath(); pen.moveTo(maps.x(where), MARGIN.top); pen.lineTo(maps.x(where), this.element.clientHeight - MARGIN.bottom); pen.stroke();
     for (const one of RUNS) if (one.shown) {
       const frame = frameAt(one, time);
       pen.fillStyle = one.colour; pen.beginPath();
-      pen.arc(maps.x(one.scalars[this.against][frame] * DATA.scalars[this.against].factor), maps.y(one.scalars[this.name][frame] * DATA.scalars[this.name].factor), 4, 0, 7);
+      pen.arc(maps.x(seriesOf(one, this.against)[frame] * DATA.scalars[this.against].factor), maps.y(seriesOf(one, this.name)[frame] * DATA.scalars[this.name].factor), 4, 0, 7);
       pen.fill();
     }
   }
@@ -100,12 +94,7 @@ class Chart {
     if (this.against === "time") return Math.min(Math.max(value, 0), END);
     const run = RUNS.find(one => one.shown);
     if (!run) return 0;
-    const frame = run.scalars[this.against].findIndex(depth => depth >= value);
+    const frame = seriesOf(run, this.against).findIndex(depth => depth >= value);
     return run.time[frame < 0 ? run.time.length - 1 : frame];
   }
-}
-
-function niceStep(span) {
-  const power = 10 ** Math.floor(Math.log10(span || 1));
-  return [1, 2, 5, 10].map(step => step * power).find(step => step >= span);
 }

@@ -1,18 +1,11 @@
-// The runs as the page holds them: base64 arrays become typed arrays, 16-bit places become millimetres.
-const DATA = JSON.parse(document.getElementById("data").textContent);
+// The runs that the player shows: base64 arrays become typed arrays, 16-bit places become millimetres.
 const COLOURS = ["#0072B2", "#E69F00", "#009E73", "#CC79A7"];
 const DASHES = [[], [7, 4], [2, 3], [9, 3, 2, 3]];
 const NO_NUMBER = 65535;
 const LEVELS = 65534;
 
-function bytes(text) {
-  const raw = atob(text);
-  const out = new Uint8Array(raw.length);
-  for (let i = 0; i < raw.length; i++) out[i] = raw.charCodeAt(i);
-  return out.buffer;
-}
-
-function unpacked(run, index) {
+// A run as the page holds it, for the player.
+function unpacked(run) {
   const [x0, y0, x1, y1] = run.box;
   const packed = new Uint16Array(bytes(run.course));
   const course = new Float32Array(packed.length);
@@ -25,14 +18,21 @@ function unpacked(run, index) {
   for (const name in run.scalars) scalars[name] = new Float32Array(bytes(run.scalars[name]));
   const time = new Float32Array(bytes(run.time));
   scalars.time = time;
-  return {
-    ...run, course, scalars, time, contacts: new Float32Array(bytes(run.contacts)),
-    colour: COLOURS[index], dash: DASHES[index], shown: true,
-  };
+  return { ...run, course, scalars, time, contacts: new Float32Array(bytes(run.contacts)) };
 }
 
-const RUNS = DATA.runs.map(unpacked);
-const END = Math.max(...RUNS.map(run => run.time[run.time.length - 1]));
+// Runs on show, in the order of their colours, and the end of the longest, s.
+const RUNS = [];
+let END = 0;
+
+function setRuns(runs) {
+  RUNS.length = 0;
+  runs.forEach((run, index) => RUNS.push(Object.assign(run, { colour: COLOURS[index], dash: DASHES[index], shown: true })));
+  END = Math.max(0, ...RUNS.map(run => run.time[run.time.length - 1]));
+}
+
+// A series of a run; an empty one if it has none of the name.
+function seriesOf(run, name) { return run.scalars[name] ?? []; }
 
 // Index of the last frame at or before a time.
 function frameAt(run, time) {
@@ -47,5 +47,5 @@ function frameAt(run, time) {
 function withUnit(name, value) {
   const scalar = DATA.scalars[name];
   if (!Number.isFinite(value)) return "-";
-  return `${Number((value * scalar.factor).toPrecision(4))}${scalar.unit ? " " + scalar.unit : ""}`;
+  return `${numberText(value * scalar.factor)}${scalar.unit ? " " + scalar.unit : ""}`;
 }

@@ -1,11 +1,9 @@
 // The player: time, keys, pointers, and what they do to scene and chart.
 const scene = new Scene();
 const chart = new Chart();
-const $ = id => document.getElementById(id);
-let time = 0, playing = false, last = 0, asked = false;
+let time = 0, playing = false, last = 0;
 
 function show() {
-  asked = false;
   scene.draw(time);
   chart.draw(time);
   $("scrub").value = String(END > 0 ? 1000 * time / END : 0);
@@ -13,14 +11,14 @@ function show() {
   readings();
 }
 
-function ask() { if (!asked) { asked = true; requestAnimationFrame(show); } }
+const ask = onceAFrame(show);
 function go(to) { time = Math.min(Math.max(to, 0), END); ask(); }
 
 function readings() {
   const shown = RUNS.filter(run => run.shown);
-  const rows = Object.keys(shown.length ? shown[0].scalars : {}).filter(name => name !== "time").map(name =>
+  const rows = scalarNames(shown).filter(name => name !== "time").map(name =>
     `<tr title="${DATA.scalars[name].meaning}"><td>${DATA.scalars[name].label}</td>` +
-    shown.map(run => `<td data-reading="${name}">${withUnit(name, run.scalars[name][frameAt(run, time)])}</td>`).join("") + "</tr>");
+    shown.map(run => `<td data-reading="${name}">${withUnit(name, seriesOf(run, name)[frameAt(run, time)])}</td>`).join("") + "</tr>");
   const head = shown.map(run => { const cell = document.createElement("th"); cell.textContent = run.name; return cell.outerHTML; }).join("");
   $("readings").innerHTML = `<div class="wide"><table><thead><tr><th>at ${time.toFixed(2)} s</th>${head}</tr></thead><tbody>${rows.join("")}</tbody></table></div>`;
 }
@@ -48,7 +46,11 @@ function step(count) {
   go(run.time[frame]);
 }
 
+// Names of the scalars of any of the runs.
+function scalarNames(runs) { return [...new Set(runs.flatMap(run => Object.keys(run.scalars)))]; }
+
 function legend() {
+  $("legend").replaceChildren();
   for (const run of RUNS) {
     const label = document.createElement("label"), box = document.createElement("input"), line = document.createElement("i");
     box.type = "checkbox"; box.checked = true; line.style.borderColor = run.colour;
@@ -60,6 +62,7 @@ function legend() {
 }
 
 function keys(event) {
+  if (event.defaultPrevented) return;
   if (event.target.matches("select, input[type=range], summary") && event.key !== " ") return;
   if (event.target.matches("button, select, summary, input[type=checkbox]") && event.key === " ") return;
   const far = event.shiftKey ? 10 : 1, middle = [scene.element.clientWidth / 2, scene.element.clientHeight / 2];
@@ -76,11 +79,6 @@ function keys(event) {
 // Pointers on the scene: one drags or reads, two pinch.
 const down = new Map();
 
-function at(event, element) {
-  const box = element.getBoundingClientRect();
-  return [event.clientX - box.left, event.clientY - box.top];
-}
-
 function sceneMoved(event) {
   const place = at(event, scene.element), before = down.get(event.pointerId);
   if (!before) { scene.read(...place, time); return; }
@@ -94,14 +92,15 @@ function sceneMoved(event) {
   ask();
 }
 
-function listen() {
+// hears : what hears the keys.
+function listen(hears) {
   $("play").addEventListener("click", () => play(!playing));
   $("scrub").addEventListener("input", event => go(END * Number(event.target.value) / 1000));
   $("fit").addEventListener("click", () => { scene.fitView(); ask(); });
   $("arrows").addEventListener("input", event => { scene.arrowFactor = 10 ** Number(event.target.value); ask(); });
   $("curve").addEventListener("change", event => { chart.name = event.target.value; ask(); });
   $("against").addEventListener("change", event => { chart.against = event.target.value; ask(); });
-  document.addEventListener("keydown", keys);
+  hears.addEventListener("keydown", keys);
   const stage = scene.element;
   stage.addEventListener("pointerdown", event => { stage.setPointerCapture(event.pointerId); down.set(event.pointerId, at(event, stage)); scene.read(...at(event, stage), time); });
   stage.addEventListener("pointermove", sceneMoved);
@@ -111,15 +110,23 @@ function listen() {
   const curve = chart.element;
   curve.addEventListener("pointerdown", event => { curve.setPointerCapture(event.pointerId); play(false); go(chart.timeAt(at(event, curve)[0])); });
   curve.addEventListener("pointermove", event => { if (event.buttons) go(chart.timeAt(at(event, curve)[0])); });
-  new ResizeObserver(() => { scene.fit(); chart.fit(); ask(); }).observe(stage);
+  const resized = new ResizeObserver(() => { scene.fit(); chart.fit(); ask(); });
+  resized.observe(stage);
+  resized.observe(curve);
 }
 
-for (const name of Object.keys(RUNS[0].scalars).filter(name => !["time", "insertion_depth"].includes(name))) {
-  const option = document.createElement("option");
-  option.value = name; option.textContent = DATA.scalars[name].label; option.selected = name === chart.name;
-  $("curve").append(option);
+// The curves there are to choose from; the one on show stays, if there is one of its name.
+function curveNames() {
+  const names = scalarNames(RUNS).filter(name => !["time", "insertion_depth"].includes(name));
+  if (!names.includes(chart.name)) chart.name = names[0];
+  $("curve").replaceChildren(...names.map(name => make("option", { value: name, textContent: DATA.scalars[name].label, selected: name === chart.name })));
 }
-legend();
-listen();
-scene.fit(); chart.fit(); scene.fitView();
-go(0);
+
+// After other runs were put on show.
+function refreshPlayer() {
+  play(false);
+  legend();
+  curveNames();
+  scene.fit(); chart.fit(); scene.reset();
+  go(time);
+}

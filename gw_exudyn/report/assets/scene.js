@@ -1,24 +1,18 @@
 // The plane of the vessel: view, walls, wires, arrows, and what lies under the pointer. Lengths in millimetres.
 const FORCE_COLOUR = "#D55E00";
-
-function canvasOf(id) {
-  const element = document.getElementById(id);
-  const pen = element.getContext("2d");
-  const fit = () => {
-    const ratio = window.devicePixelRatio || 1;
-    element.width = Math.max(1, Math.round(element.clientWidth * ratio));
-    element.height = Math.max(1, Math.round(element.clientHeight * ratio));
-    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-  };
-  return { element, pen, fit };
-}
+const BAR_ROOM = 36;  // pixels at the bottom, for the scale bars
 
 class Scene {
   constructor() {
-    Object.assign(this, canvasOf("scene"));
-    this.tooltip = document.getElementById("tooltip");
-    this.longest = largestForce();
+    Object.assign(this, canvasOf($("scene")));
+    this.tooltip = $("tooltip");
     this.arrowFactor = 1;
+    this.reset();
+  }
+
+  // After other runs were put on show.
+  reset() {
+    this.longest = largestForce();
     this.fitView();
   }
 
@@ -28,10 +22,10 @@ class Scene {
     const hold = (x, y) => { x0 = Math.min(x0, x); y0 = Math.min(y0, y); x1 = Math.max(x1, x); y1 = Math.max(y1, y); };
     for (const run of RUNS) for (const line of run.walls) for (const [x, y] of line) hold(x, y);
     if (!Number.isFinite(x0)) for (const run of RUNS) { hold(run.box[0], run.box[1]); hold(run.box[2], run.box[3]); }
-    const width = this.element.clientWidth || 1, height = this.element.clientHeight || 1;
+    const width = this.element.clientWidth || 1, height = Math.max((this.element.clientHeight || 1) - BAR_ROOM, 1);
     this.size = Math.max(x1 - x0, y1 - y0, 1);
-    this.scale = 0.92 * Math.min(width / Math.max(x1 - x0, 1), height / Math.max(y1 - y0, 1));
-    this.centre = [(x0 + x1) / 2, (y0 + y1) / 2];
+    this.scale = 0.95 * Math.min(width / Math.max(x1 - x0, 1), height / Math.max(y1 - y0, 1));
+    this.centre = [(x0 + x1) / 2, (y0 + y1) / 2 - BAR_ROOM / 2 / this.scale];
   }
 
   px(x, y) {
@@ -71,7 +65,8 @@ class Scene {
       for (const line of run.walls) { this.path(line); pen.stroke(); }
     }
     pen.setLineDash([]);
-    for (const run of RUNS) if (run.shown) this.drawWire(run, frameAt(run, time));
+    // Thick ones first, so that a thin one on the same way is not hidden.
+    for (const run of RUNS.filter(one => one.shown).sort((a, b) => b.diameter - a.diameter)) this.drawWire(run, frameAt(run, time));
     for (const run of RUNS) if (run.shown) this.drawForces(run, frameAt(run, time));
     this.drawScaleBar();
   }
