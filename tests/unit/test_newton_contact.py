@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from model_cases import LAW, RADIUS, at_rest, bare_walls, force_at, plain_wire
@@ -113,6 +115,6 @@ def test_a_step_is_given_up_where_newton_has_gone_further_than_a_step_may():
 
     newton._before_residual = watched
     assert stepper.advance(13.0)
-    after = [following for (count, far), (following, _) in zip(calls, calls[1:], strict=False) if count >= 3 and far]
+    after = [following for (count, far), (following, _) in pairwise(calls) if count >= 3 and far]
     assert after
     assert set(after) == {0}
