@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gw_exudyn.errors import SolverError, StorageError, UsageError
-from gw_exudyn.fmi.cache import unpacked
+from gw_exudyn.fmi.cache import may_run, unpacked
 from gw_exudyn.fmi.variables import STATUS_CODE, STATUS_MESSAGE
 from gw_exudyn.result import Status
 from gw_exudyn.scenario.units import parse_unit
@@ -74,6 +74,8 @@ class FmuSession:
             try:
                 self._folder = unpacked(file) or self._apart(file, extract)
                 self.description: Any = read_model_description(str(self._folder), validate=False)
+            except StorageError:
+                raise
             except Exception as error:  # whatever a file that is no FMU leads to in fmpy
                 raise StorageError(f"{os.fspath(file)}: can't be read as an FMU: {error}") from error
             self.variables = {variable.name: variable for variable in self.description.modelVariables}
@@ -102,8 +104,14 @@ class FmuSession:
             shutil.rmtree(self._own_folder, ignore_errors=True)
 
     def _apart(self, file: str | os.PathLike[str], extract: Callable[..., Any]) -> Path:
-        """Unpacked in a folder of its own, where there is no cache."""
+        """Unpacked in a folder of its own, where there is no cache. Raises StorageError where nothing there may run."""
         self._own_folder = Path(tempfile.mkdtemp(prefix="gw-fmu-"))
+        if not may_run(self._own_folder):
+            raise StorageError(
+                f"{tempfile.gettempdir()} forbids running what is in it (mount option noexec), and so does, or is "
+                "missing, the cache folder; an FMU must be unpacked where it may run: let the environment variable "
+                "TMPDIR name another folder"
+            )
         extract(os.fspath(file), unzipdir=str(self._own_folder))
         return self._own_folder
 

@@ -81,18 +81,18 @@ def test_a_parameter_gives_the_run_of_the_scenario_with_it(fmu, scenario):
 LOADS = """wire: {model: universal-ii, segments: 20, length: 60 mm}
 vessel: {kind: none}
 catheter: {bore: 1 mm}
-drive: {kind: speed, speed: 5 mm/s, distance: 30 mm}
-supports: [{at: [15 mm, 3 mm], radius: 1 mm}]
-nose: {at: [20 mm, -4 mm], radius: 1 mm, direction: 90 deg, speed: 0.5 mm/s, travel: 2 mm}
+drive: {kind: speed, start: 25 mm, speed: 1 mm/s, distance: 5 mm}
+supports: [{at: [10 mm, 1.3 mm], radius: 1 mm}]
+nose: {at: [20 mm, -1.5 mm], radius: 1 mm, direction: 90 deg, speed: 0.5 mm/s, travel: 2 mm}
 """
 LOADED = {
     "tip.dead_force[1]": 1e-5,
     "tip.follower_force[0]": 2e-6,
     "tip.moment": 1e-8,
     "tip.ramp": 0.5,
-    "supports[0].at[0]": 0.014,
-    "supports[0].radius": 0.0015,
-    "nose.at[1]": -0.0035,
+    "supports[0].at[0]": 0.011,
+    "supports[0].radius": 0.0011,
+    "nose.at[1]": -0.0014,
     "nose.speed": 0.001,
     "wire.stiffness_factor.tip": 1.2,
     "wire.estimate": "high",
