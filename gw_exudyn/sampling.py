@@ -26,12 +26,21 @@ NODE_ON_WALL, CORNER_ON_WIRE, TIP_ON_CORNER, DISC_ON_WIRE = 0, 1, 2, 3
 VESSEL, CATHETER, SUPPORT, NOSE = 0, 1, 2, 3
 
 
-def sample(stepper: Stepper) -> dict[str, Any]:
-    """The quantities of the table at the time reached (see `quantities`): scalars, node, joint and contact arrays."""
+def sample(stepper: Stepper, *, shape: bool = True) -> dict[str, Any]:
+    """The quantities of the table at the time reached (see `quantities`): scalars, node, joint and contact arrays.
+
+    shape : False leaves the arrays over nodes and joints out.
+    """
     contacts = contact_points(stepper)
+    arrays = _shape(stepper) if shape else {}
+    # The tip is the last node, to the bit.
+    tip = (arrays["node_x"][-1], arrays["node_y"][-1]) if shape else stepper.model.frame.points_out(stepper.tip())
     return {
         "time": stepper.time,
+        "tip_x": tip[0],
+        "tip_y": tip[1],
         **_place(stepper),
+        **arrays,
         **_forces(stepper, contacts),
         **_loads(stepper),
         **_energies(stepper),
@@ -41,24 +50,27 @@ def sample(stepper: Stepper) -> dict[str, Any]:
 
 
 def _place(stepper: Stepper) -> dict[str, Any]:
-    wire, motion, frame = stepper.model.wire, stepper.contact.motion, stepper.model.frame
+    return {
+        "insertion_depth": stepper.instant.travel,
+        "tip_angle": stepper.contact.motion.q[-1, 2] + stepper.model.frame.angle,
+        "drive_speed": stepper.hub.speed,
+        "drive_position": stepper.instant.travel - stepper.model.wire.length,
+    }
+
+
+def _shape(stepper: Stepper) -> dict[str, Floats]:
+    wire, motion = stepper.model.wire, stepper.contact.motion
     half, nodes = wire.lengths / 2, np.empty((wire.segments + 1, 2))
     for axis, direction in enumerate((motion.c, motion.s)):
         arm = half * direction
         nodes[0, axis] = motion.q[0, axis] - arm[0]
         nodes[1:, axis] = motion.q[:, axis] + arm
-    nodes = frame.points_out(nodes)
+    nodes = stepper.model.frame.points_out(nodes)
     return {
-        "insertion_depth": stepper.instant.travel,
-        "tip_x": nodes[-1, 0],
-        "tip_y": nodes[-1, 1],
-        "tip_angle": motion.q[-1, 2] + frame.angle,
         "node_x": nodes[:, 0],
         "node_y": nodes[:, 1],
         "joint_angle": relative_angles(motion.q[:, 2]),
         "joint_torque": -joint_moments(wire, motion),
-        "drive_speed": stepper.hub.speed,
-        "drive_position": stepper.instant.travel - wire.length,
     }
 
 

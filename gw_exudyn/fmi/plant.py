@@ -44,6 +44,7 @@ class ScenarioPlant:
         self._active_at = place[names.COMMAND_ACTIVE]
         outputs = [v for v in table if v.role == names.OUTPUT and v.kind != TEXT]
         self._readers = list(readers(outputs))
+        self._shape = any(v.name in names.STATION_NAMES for v in outputs)
         self._built_of: tuple[Any, ...] | None = None
         self._simulation: Simulation | None = None
         self._commanded = False
@@ -70,7 +71,7 @@ class ScenarioPlant:
         key = (*(v for i, v in enumerate(values) if i not in self._not_structure), *texts)
         if self._simulation is None or key != self._built_of:
             self._simulation, self._built_of = None, None
-            self._simulation = Simulation(self._scenario(values, texts))
+            self._simulation = Simulation(self._scenario(values, texts), shape=self._shape)
             self._built_of = key
         else:
             self._simulation.reset()
