@@ -37,12 +37,14 @@ extern char **environ;
 /* Descriptors in the worker; gw_exudyn/fmi/channel.py knows them too. */
 enum { WORKER_CHANNEL = 3, WORKER_LIFELINE = 4 };
 
-/* A reply to a quick request is awaited without sleep: a waking costs more than the request. */
-static const double SPIN = 100e-6;
+/* A reply to a quick request is awaited without sleep, since a waking costs more than the request; not where the last
+ * one took longer than QUICK, which a quick one does not even with a waking. Seconds. */
+static const double SPIN = 100e-6, QUICK = 400e-6;
 
 struct Worker {
     pid_t pid;
     int channel, lifeline, words;
+    bool slow; /* so was the last reply that had to be awaited */
 };
 
 FILE *platform_open(const char *path) { return fopen(path, "rb"); }
@@ -280,8 +282,9 @@ Channel worker_send(Worker *worker, const void *data, size_t size, double timeou
 }
 
 Channel worker_receive(Worker *worker, void *data, size_t size, double timeout) {
-    double begin = now(), deadline = timeout > 0 ? begin + timeout : 0;
+    double begin = now(), deadline = timeout > 0 ? begin + timeout : 0, spin = worker->slow ? 0 : SPIN;
     char *rest = data;
+    bool awaited = false;
     while (size > 0) {
         ssize_t got = recv(worker->channel, rest, size, MSG_DONTWAIT);
         if (got > 0) {
@@ -290,7 +293,8 @@ Channel worker_receive(Worker *worker, void *data, size_t size, double timeout) 
         } else if (got == 0) {
             return CHANNEL_CLOSED;
         } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
-            if (now() - begin < SPIN) {
+            awaited = true;
+            if (now() - begin < spin) {
                 sched_yield();
             } else {
                 Channel state = await(worker->channel, POLLIN, deadline);
@@ -300,6 +304,7 @@ Channel worker_receive(Worker *worker, void *data, size_t size, double timeout) 
             return CHANNEL_CLOSED;
         }
     }
+    if (awaited) worker->slow = now() - begin > QUICK;
     return CHANNEL_OK;
 }
 

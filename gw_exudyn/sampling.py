@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -11,19 +12,35 @@ from numpy.typing import NDArray
 from gw_exudyn.engine.stepper import Stepper
 from gw_exudyn.model.energy import joint_moments, relative_angles
 from gw_exudyn.model.kernel import Pairs
+from gw_exudyn.quantities import CONTACT_FIELDS, QUANTITIES
 
 Floats = NDArray[np.float64]
+
+_NO_CONTACTS: Mapping[str, Floats] = MappingProxyType(
+    {name: np.zeros(0, int if QUANTITIES[name].integer else float) for name in CONTACT_FIELDS}
+    | {"force": np.zeros((0, 2)), "at_tip": np.zeros(0, bool)}
+)
+"""As `contact_points` where nothing touches."""
 
 NODE_ON_WALL, CORNER_ON_WIRE, TIP_ON_CORNER, DISC_ON_WIRE = 0, 1, 2, 3
 VESSEL, CATHETER, SUPPORT, NOSE = 0, 1, 2, 3
 
 
-def sample(stepper: Stepper) -> dict[str, Any]:
-    """The quantities of the table at the time reached (see `quantities`): scalars, node, joint and contact arrays."""
+def sample(stepper: Stepper, *, shape: bool = True) -> dict[str, Any]:
+    """The quantities of the table at the time reached (see `quantities`): scalars, node, joint and contact arrays.
+
+    shape : False leaves the arrays over nodes and joints out.
+    """
     contacts = contact_points(stepper)
+    arrays = _shape(stepper) if shape else {}
+    # The tip is the last node, to the bit.
+    tip = (arrays["node_x"][-1], arrays["node_y"][-1]) if shape else stepper.model.frame.points_out(stepper.tip())
     return {
         "time": stepper.time,
+        "tip_x": tip[0],
+        "tip_y": tip[1],
         **_place(stepper),
+        **arrays,
         **_forces(stepper, contacts),
         **_loads(stepper),
         **_energies(stepper),
@@ -33,35 +50,47 @@ def sample(stepper: Stepper) -> dict[str, Any]:
 
 
 def _place(stepper: Stepper) -> dict[str, Any]:
-    wire, motion, frame = stepper.model.wire, stepper.contact.motion, stepper.model.frame
-    arm = wire.lengths[:, None] / 2 * np.column_stack([motion.c, motion.s])
-    nodes = frame.points_out(np.vstack([motion.q[:1, :2] - arm[:1], motion.q[:, :2] + arm]))
     return {
         "insertion_depth": stepper.instant.travel,
-        "tip_x": nodes[-1, 0],
-        "tip_y": nodes[-1, 1],
-        "tip_angle": motion.q[-1, 2] + frame.angle,
+        "tip_angle": stepper.contact.motion.q[-1, 2] + stepper.model.frame.angle,
+        "drive_speed": stepper.hub.speed,
+        "drive_position": stepper.instant.travel - stepper.model.wire.length,
+    }
+
+
+def _shape(stepper: Stepper) -> dict[str, Floats]:
+    wire, motion = stepper.model.wire, stepper.contact.motion
+    half, nodes = wire.lengths / 2, np.empty((wire.segments + 1, 2))
+    for axis, direction in enumerate((motion.c, motion.s)):
+        arm = half * direction
+        nodes[0, axis] = motion.q[0, axis] - arm[0]
+        nodes[1:, axis] = motion.q[:, axis] + arm
+    nodes = stepper.model.frame.points_out(nodes)
+    return {
         "node_x": nodes[:, 0],
         "node_y": nodes[:, 1],
         "joint_angle": relative_angles(motion.q[:, 2]),
         "joint_torque": -joint_moments(wire, motion),
-        "drive_speed": stepper.hub.speed,
-        "drive_position": stepper.instant.travel - wire.length,
     }
 
 
-def contact_points(stepper: Stepper) -> dict[str, Floats]:
+def contact_points(stepper: Stepper) -> Mapping[str, Floats]:
     """The contacts that carry a force, (c,) each: the table's contact fields, and `force` (c, 2), N, of the wire on
     the wall in the plane, and `at_tip` (c,) bool, on the tip's disc."""
-    nodes, corners, discs = _node_contacts(stepper), _corner_contacts(stepper), _disc_contacts(stepper)
-    joined = {name: np.concatenate([nodes[name], corners[name], discs[name]]) for name in nodes}
+    found = [part for part in (_node_contacts(stepper), _corner_contacts(stepper), _disc_contacts(stepper)) if part]
+    if not found:
+        return _NO_CONTACTS
+    joined = {name: np.concatenate([part[name] for part in found]) for name in found[0]}
     points = stepper.model.frame.points_out(joined.pop("point"))
     return {**joined, "contact_x": points[:, 0], "contact_y": points[:, 1]}
 
 
 def _node_contacts(stepper: Stepper) -> dict[str, Floats]:
+    """Of the nodes with walls; nothing at all where none touches, as of the other kinds."""
     pairs, wire, walls, motion = stepper.contact.nodes, stepper.model.wire, stepper.model.walls, stepper.contact.motion
     live = _carrying(pairs)
+    if not live.any():
+        return {}
     body, wall = pairs.body[live], pairs.target[live]
     along = np.column_stack([motion.c[body], motion.s[body]])
     node = motion.q[body, :2] + wire.lengths[body, None] / 2 * along
@@ -90,6 +119,8 @@ def _corner_contacts(stepper: Stepper) -> dict[str, Floats]:
         stepper.contact.motion,
     )
     live = _carrying(pairs)
+    if not live.any():
+        return {}
     body, corner = pairs.body[live], pairs.target[live]
     half = wire.lengths[body] / 2
     along = np.column_stack([motion.c[body], motion.s[body]])
@@ -120,6 +151,8 @@ def _corner_contacts(stepper: Stepper) -> dict[str, Floats]:
 def _disc_contacts(stepper: Stepper) -> dict[str, Floats]:
     discs, wire, frame = stepper.loads.discs, stepper.model.wire, stepper.model.frame
     found = discs.contacts
+    if not found:
+        return {}
     body = np.array([contact.body for contact in found], dtype=int)
     foot = np.array([contact.foot for contact in found])
     normal = np.array([contact.normal for contact in found])

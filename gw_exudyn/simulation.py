@@ -38,11 +38,13 @@ class Simulation:
 
     Raises ScenarioError for a scenario that cannot start, SolverError where Exudyn is not there.
 
-    scenario : Scenario. model : Model, what was built of it.
+    scenario : Scenario. model : Model, what was built of it. shape : False for outputs without the arrays over nodes
+    and joints, for those who step often and do not look at them.
     """
 
-    def __init__(self, scenario: Scenario) -> None:
+    def __init__(self, scenario: Scenario, *, shape: bool = True) -> None:
         self.scenario = scenario
+        self._shape = shape
         self.model: Model = build(scenario)
         self._stepper = Stepper(self.model)
         self._watch = Watch(self._stepper)
@@ -104,7 +106,7 @@ class Simulation:
     def outputs(self) -> Mapping[str, Any]:
         """Every quantity of the table of quantities at the time reached: floats, and arrays over nodes, joints and
         contacts."""
-        return MappingProxyType(sample(self._stepper))
+        return MappingProxyType(sample(self._stepper, shape=self._shape))
 
     def step(self, dt: float, *, speed: float | None = None, force: float | None = None) -> Mapping[str, Any]:
         """Go on by dt and return the outputs there.

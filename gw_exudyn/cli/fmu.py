@@ -81,7 +81,8 @@ def run(
     as_json: bool,
 ) -> int:
     """Run FILE.fmu and show its outputs at the end, or write them all into a folder."""
-    from gw_exudyn.fmi.session import FmuSession, read_inputs, write_run
+    from gw_exudyn.fmi.run_files import read_inputs, write_run
+    from gw_exudyn.fmi.session import FmuSession
 
     chosen = dict(_pair(text) for text in values)
     table = read_inputs(inputs) if inputs else None

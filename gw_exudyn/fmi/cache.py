@@ -26,8 +26,14 @@ _KEPT = 30 * 86400.0
 """Seconds without use after which an entry is removed."""
 
 
+def may_run(folder: Path) -> bool:
+    """Programs and libraries in a folder may be run, as far as the system tells: it is not mounted with noexec."""
+    return sys.platform == "win32" or not os.statvfs(folder).f_flag & getattr(os, "ST_NOEXEC", 0)
+
+
 def cache_folder() -> Path | None:
-    """The folder of unpacked FMUs, made if missing, for this user alone; None where there can be none."""
+    """The folder of unpacked FMUs, made if missing, for this user alone; None where there can be none, or nothing in
+    it may be run."""
     if sys.platform == "win32":
         base = os.environ.get("LOCALAPPDATA", "")
     elif sys.platform == "darwin":
@@ -46,6 +52,8 @@ def cache_folder() -> Path | None:
             if found.st_uid != os.getuid():
                 return None
             folder.chmod(0o700)
+        if not may_run(folder):
+            return None
     except OSError:
         return None
     return folder

@@ -18,8 +18,9 @@ HELLO, DONE, STOPPED, FAILED, REFUSED, ALIVE, STATE = 100, 101, 102, 103, 104, 1
 
 _HEAD = struct.Struct("=IIII")
 _CHANNEL, _LIFELINE = 3, 4
-_SPIN = 200e-6
-"""How long the next request is awaited without sleep, s: a waking costs more than a quick request."""
+_SPIN, _QUICK = 200e-6, 500e-6
+"""How long, s, the next request is awaited without sleep, since a waking costs more than a quick host takes; not where
+the last one was awaited for longer than the second of these, which that of a quick host is not even with a waking."""
 
 _BLOCK = 1 << 16
 _WINDOWS = sys.platform == "win32"
@@ -52,6 +53,7 @@ class Channel:
             os.set_blocking(_CHANNEL, False)
             os.set_blocking(2, False)  # last words that nobody reads must not hold us up
         self._held = b""
+        self._slow = False
 
     def receive(self) -> Request:
         """The next request. Raises HostGone at the end."""
@@ -74,7 +76,8 @@ class Channel:
         return taken
 
     def _read(self) -> bytes:
-        until = time.perf_counter() + _SPIN
+        began = time.perf_counter()
+        until = began if self._slow else began + _SPIN
         while True:
             try:
                 block = os.read(self._reading, _BLOCK)
@@ -88,6 +91,7 @@ class Channel:
                 block = b""
             if not block:
                 raise HostGone
+            self._slow = time.perf_counter() - began > _QUICK
             return block
 
     def _send(self, data: bytes) -> None:

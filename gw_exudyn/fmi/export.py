@@ -21,7 +21,8 @@ from gw_exudyn.fmi import bundle, description
 from gw_exudyn.fmi.bundle import FOLDER
 from gw_exudyn.fmi.page import documentation
 from gw_exudyn.fmi.resources import HASHES, SCENARIO, TABLE, Launch, table_text
-from gw_exudyn.fmi.variables import Variable, table
+from gw_exudyn.fmi.table import table
+from gw_exudyn.fmi.variables import Variable
 from gw_exudyn.fmi.wrapper import HEADERS, PLATFORMS, SOURCES, library, source_folder
 from gw_exudyn.quantities import SCALARS
 

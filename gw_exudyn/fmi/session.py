@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import csv
 import difflib
-import json
 import os
 import shutil
 import tempfile
@@ -14,14 +12,12 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-import numpy as np
 from numpy.typing import NDArray
 
 from gw_exudyn.errors import SolverError, StorageError, UsageError
-from gw_exudyn.fmi.cache import unpacked
+from gw_exudyn.fmi.cache import may_run, unpacked
 from gw_exudyn.fmi.variables import STATUS_CODE, STATUS_MESSAGE
 from gw_exudyn.result import Status
-from gw_exudyn.scenario.units import parse_unit
 
 _TAKES_TEXT = ("String",)
 
@@ -74,6 +70,8 @@ class FmuSession:
             try:
                 self._folder = unpacked(file) or self._apart(file, extract)
                 self.description: Any = read_model_description(str(self._folder), validate=False)
+            except StorageError:
+                raise
             except Exception as error:  # whatever a file that is no FMU leads to in fmpy
                 raise StorageError(f"{os.fspath(file)}: can't be read as an FMU: {error}") from error
             self.variables = {variable.name: variable for variable in self.description.modelVariables}
@@ -102,8 +100,14 @@ class FmuSession:
             shutil.rmtree(self._own_folder, ignore_errors=True)
 
     def _apart(self, file: str | os.PathLike[str], extract: Callable[..., Any]) -> Path:
-        """Unpacked in a folder of its own, where there is no cache."""
+        """Unpacked in a folder of its own, where there is no cache. Raises StorageError where nothing there may run."""
         self._own_folder = Path(tempfile.mkdtemp(prefix="gw-fmu-"))
+        if not may_run(self._own_folder):
+            raise StorageError(
+                f"{tempfile.gettempdir()} forbids running what is in it (mount option noexec), and so does, or is "
+                "missing, the cache folder; an FMU must be unpacked where it may run: let the environment variable "
+                "TMPDIR name another folder"
+            )
         extract(os.fspath(file), unzipdir=str(self._own_folder))
         return self._own_folder
 
@@ -223,68 +227,3 @@ def _boolean(text: str) -> bool:
 
 def _unit(variable: Any) -> str:
     return str(variable.unit or "no unit")
-
-
-def run_point(session: FmuSession, point: Mapping[str, Any], *, step: float | None = None) -> dict[str, Any]:
-    """One point of a study on a reused instance: the outputs at the end, the largest of the forces, and the status."""
-    run = session.run(point, step=step)
-    forces = [name for name in run.names if "force" in name and ".peak" not in name]
-    peaks = {f"{name}.peak": float(run.outputs[name].max()) for name in forces}
-    return {
-        **peaks,
-        **{name: float(value) for name, value in run.final.items() if np.ndim(value) == 0},
-        "code": run.code,
-    }
-
-
-def read_inputs(file: str | os.PathLike[str]) -> NDArray[Any]:
-    """Inputs against time from a CSV file: header `time,command.speed`, SI, or with a unit, `command.speed [mm/s]`.
-
-    Raises StorageError with file and line for what is no number, times that fall, or a missing time.
-    """
-    path = Path(file)
-    try:
-        with path.open(newline="", encoding="utf-8-sig") as lines:
-            rows = [row for row in csv.reader(lines) if row]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise StorageError(f"{path}: can't be read: {error}") from error
-    if len(rows) < 2:
-        raise StorageError(f"{path}: has no rows; write a header, time,command.speed, and a row for each time")
-    heads = [_heading(path, cell) for cell in rows[0]]
-    if heads[0][0] != "time":
-        raise StorageError(f"{path}:1: the first column is {rows[0][0]!r}; it must be time")
-    table = np.zeros(len(rows) - 1, [(name, float) for name, _ in heads])
-    for i, row in enumerate(rows[1:]):
-        try:
-            table[i] = tuple(float(cell) * factor for cell, (_, factor) in zip(row, heads, strict=True))
-        except ValueError as error:
-            raise StorageError(f"{path}:{i + 2}: {error}; {len(heads)} numbers are needed") from error
-    if not (np.diff(table["time"]) >= 0).all():
-        raise StorageError(f"{path}: the times must not fall")
-    return table
-
-
-def _heading(path: Path, cell: str) -> tuple[str, float]:
-    name, bracket, unit = cell.strip().partition("[")
-    try:
-        return name.strip(), float(parse_unit(unit.rstrip("] ")).factor) if bracket else 1.0
-    except ValueError as error:
-        raise StorageError(f"{path}:1: {cell}: {error}") from error
-
-
-def write_run(run: FmuRun, session: FmuSession, values: Mapping[str, Any], folder: str | os.PathLike[str]) -> Path:
-    """Write outputs.csv (scalars, header with SI units) and run.json into a folder. Raises StorageError."""
-    target = Path(folder)
-    names = [name for name in run.names if run.outputs[name].ndim == 1]
-    units = {"time": "s", **{n: getattr(session.variables.get(n), "unit", None) or "1" for n in names if n != "time"}}
-    try:
-        target.mkdir(parents=True, exist_ok=True)
-        with (target / "outputs.csv").open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow([f"{name} [{units[name]}]" for name in names])
-            writer.writerows([[repr(row[name].item()) for name in names] for row in run.outputs])
-        content = {"status": run.code, "message": run.message, "values": dict(values)}
-        (target / "run.json").write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
-    except OSError as error:
-        raise StorageError(f"{target}: can't be written: {error.strerror or error}") from error
-    return target

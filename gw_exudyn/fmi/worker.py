@@ -6,6 +6,7 @@ It greets the wrapper before it loads the heavy packages, so that they load whil
 from __future__ import annotations
 
 import gc
+import struct
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -87,8 +88,6 @@ def _answer(channel: Channel, plant: Plant, request: Request) -> None:
         return
     else:
         raise ValueError(f"request {request.kind}")
-    import struct
-
     numbers, texts = plant.outputs()
     channel.reply(kind, struct.pack("=d", plant.time) + numbers, pack_texts(texts))
 

@@ -87,7 +87,7 @@ class FmuRunner:
     @contextmanager
     def _values(self, scenario: Scenario) -> Iterator[dict[str, Any]]:
         """Values of the FMU's parameters that make this scenario of the exported one; or a file that holds it."""
-        from gw_exudyn.fmi.plant import overridden
+        from gw_exudyn.fmi.overriding import overridden
 
         wanted = _parameters(scenario)
         changed = {name: wanted[name] for name, start in self._starts.items() if wanted.get(name, start) != start}

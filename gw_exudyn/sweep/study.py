@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from gw_exudyn.errors import Problem, ScenarioError
+from gw_exudyn.fmi.overriding import opened
 from gw_exudyn.metrics import Metric
 from gw_exudyn.scenario import Scenario
 from gw_exudyn.scenario.loading import scenario_from_source
@@ -56,9 +57,15 @@ class Study:
         try:
             given = {**self.fixed, **self.design.values(point)}
             overrides = {path: self.beside(path, value) for path, value in given.items()}
-            return scenario_from_source(self._source, overrides, self._folder)
+            source = self._source if self._exported is None else YamlSource(opened(self._exported, overrides))
+            return scenario_from_source(source, overrides, self._folder)
         except ScenarioError as error:
             raise ScenarioError(self.placed(error.problems, point)) from None
+
+    @cached_property
+    def _exported(self) -> Scenario | None:
+        """The scenario in the FMU that is the base."""
+        return None if self.fmu is None else scenario_from_source(self._source, {}, self._folder)
 
     @cached_property
     def metric_table(self) -> Mapping[str, Metric]:

@@ -9,7 +9,8 @@ import pytest
 
 from gw_exudyn.cli.main import main
 from gw_exudyn.errors import SolverError, StorageError, UsageError
-from gw_exudyn.fmi.session import FmuSession, read_inputs, run_point
+from gw_exudyn.fmi.run_files import read_inputs
+from gw_exudyn.fmi.session import FmuSession
 from gw_exudyn.scenario import load_scenario
 from gw_exudyn.simulation import Simulation
 
@@ -64,14 +65,14 @@ def test_one_instance_serves_many_points_and_an_error_does_not_end_it(fmu, scena
     simulation.advance(1.5)
     with FmuSession(fmu) as session:
         point = {"drive.distance": 0.03}
-        first = run_point(session, {**point, "contact.friction_coefficient": 0.1}, step=0.25)
+        first = session.run({**point, "contact.friction_coefficient": 0.1}, step=0.25)
         with pytest.raises(SolverError, match="allowed: 0 to 2"):
-            run_point(session, {"contact.friction_coefficient": 9.0})
+            session.run({"contact.friction_coefficient": 9.0})
         run = session.run(point, stop=1.5, step=0.5)
-        again = run_point(session, {**point, "contact.friction_coefficient": 0.1}, step=0.25)
-    assert first == again
-    assert first["code"] == 0
-    assert first["push.force.peak"] >= first["push.force"]
+        again = session.run({**point, "contact.friction_coefficient": 0.1}, step=0.25)
+    assert first.outputs.tobytes() == again.outputs.tobytes()
+    assert first.code == again.code == 0
+    assert first.final["push.force.peak"] >= first.final["push.force"]
     assert run.final["tip.x"] == pytest.approx(simulation.outputs["tip_x"], rel=1e-9)
     np.testing.assert_allclose(run.outputs["time"], [0, 0.5, 1.0, 1.5])
 

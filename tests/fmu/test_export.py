@@ -96,6 +96,18 @@ def test_what_the_vessel_has_becomes_a_parameter():
     assert not [n for n in {v.name for v in variables_of(load_scenario("corner90-universal"), 2)} if "vessel" in n]
 
 
+@pytest.mark.parametrize("name", list_shipped())
+def test_no_name_is_that_of_a_list_and_of_a_value(name):
+    names = [variable.name for variable in variables_of(load_scenario(name), 3)]
+    assert len(set(names)) == len(names)
+    assert not {n.partition("[")[0] for n in names if n.endswith("]")} & set(names)
+
+
+def test_what_a_word_stands_for_is_no_start_of_a_parameter():
+    names = {variable.name for variable in variables_of(load_scenario("arc90", ["stop.tip_stall=off"]), 2)}
+    assert "stop.tip_stall" not in names
+
+
 def test_capabilities_are_declared_in_both_versions(fmu):
     co_simulation = read_model_description(str(fmu)).coSimulation
     assert co_simulation.canHandleVariableCommunicationStepSize

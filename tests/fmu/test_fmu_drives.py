@@ -6,7 +6,7 @@ import pytest
 from hosts import DISCARD, ERROR, OK, Host
 
 from gw_exudyn.fmi.export import export
-from gw_exudyn.fmi.plant import overridden
+from gw_exudyn.fmi.overriding import overridden
 from gw_exudyn.scenario import scenario_from_dict
 from gw_exudyn.simulation import Simulation
 

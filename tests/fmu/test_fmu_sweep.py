@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 from gw_exudyn.cli.main import main
-from gw_exudyn.errors import UsageError
+from gw_exudyn.errors import ScenarioError, UsageError
 from gw_exudyn.fmi.export import export
 from gw_exudyn.scenario import load_scenario, scenario_from_dict
 from gw_exudyn.simulation import simulate
@@ -53,7 +53,7 @@ def compare(ours: str, theirs: str) -> None:
                 continue
             if name in NOT_TOLD:
                 assert mine[head] == ""
-            elif name in ("status", "reason", "trusted") or not text:
+            elif name in ("status", "reason", "trusted", "wire.model", "wire.estimate") or not text:
                 assert mine[head] == text, head
             else:
                 assert float(mine[head]) == pytest.approx(float(text), rel=1e-9, abs=1e-18), head
@@ -89,6 +89,34 @@ def test_the_base_may_be_an_fmu(capsys):
     Path("base.fmu").write_text("no")
     assert sweep("fmu") == 3
     assert "is no FMU of gw-exudyn" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "vary",
+    [
+        {"drive.speed": "[20 mm/s, 25 mm/s]"},
+        {"drive.distance": "[30 mm]", "drive.speed": "[25 mm/s]"},
+        {"wire.model": "[amplatz-super-stiff]"},
+        {"wire.estimate": "[low]"},
+    ],
+    ids=lambda vary: " ".join(vary),
+)
+def test_a_study_of_an_fmu_may_vary_what_its_scenario_has_written_out(vary):
+    export(load_scenario("arc90", SETTINGS), "base.fmu")
+    axes = "".join(f"  {path}: {values}\n" for path, values in vary.items())
+    Path("study.yaml").write_text(f"base: base.fmu\nvary:\n{axes}")
+    assert sweep("fmu", "--engine", "fmu") == 0
+    given = ", ".join(pair.replace("=", ": ") for pair in SETTINGS if pair.partition("=")[0] not in vary)
+    Path("study.yaml").write_text(f"base: arc90\nset: {{{given}}}\nvary:\n{axes}")
+    assert sweep("native") == 0
+    compare("fmu", "native")
+
+
+def test_a_study_of_an_fmu_with_several_speeds_is_told_why_it_has_none_to_vary(capsys):
+    export(load_scenario("push-hold-pull", ["wire.segments=10"]), "base.fmu")
+    Path("study.yaml").write_text("base: base.fmu\nvary:\n  drive.speed: [20 mm/s]\n")
+    assert sweep("fmu", "--engine", "fmu") == ScenarioError.exit_code
+    assert "the drive has no one speed, but a table of it in time; change drive.table" in capsys.readouterr().err
 
 
 def test_what_an_fmu_cannot_do_is_refused(capsys):

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from hosts import OK, Host
 
-from gw_exudyn.fmi.plant import overridden
+from gw_exudyn.fmi.export import export
+from gw_exudyn.fmi.overriding import overridden
+from gw_exudyn.fmi.parameters import path_of
 from gw_exudyn.fmi.variables import output_name
 from gw_exudyn.quantities import SCALARS
 from gw_exudyn.scenario import load_scenario
@@ -74,6 +76,43 @@ def test_a_parameter_gives_the_run_of_the_scenario_with_it(fmu, scenario):
         assert host.step(2.0)["status"] == OK
         simulation.step(2.0)
         compare(host, simulation)
+
+
+LOADS = """wire: {model: universal-ii, segments: 20, length: 60 mm}
+vessel: {kind: none}
+catheter: {bore: 1 mm}
+drive: {kind: speed, start: 25 mm, speed: 1 mm/s, distance: 5 mm}
+supports: [{at: [10 mm, 1.3 mm], radius: 1 mm}]
+nose: {at: [20 mm, -1.5 mm], radius: 1 mm, direction: 90 deg, speed: 0.5 mm/s, travel: 2 mm}
+"""
+LOADED = {
+    "tip.dead_force[1]": 1e-5,
+    "tip.follower_force[0]": 2e-6,
+    "tip.moment": 1e-8,
+    "tip.ramp": 0.5,
+    "supports[0].at[0]": 0.011,
+    "supports[0].radius": 0.0011,
+    "nose.at[1]": -0.0014,
+    "nose.speed": 0.001,
+    "wire.stiffness_factor.tip": 1.2,
+    "wire.estimate": "high",
+    "catheter.exit[0]": 0.001,
+}
+
+
+def test_loads_supports_and_nose_are_parameters(tmp_path):
+    (tmp_path / "loaded.yaml").write_text(LOADS)
+    base = load_scenario(tmp_path / "loaded.yaml")
+    simulation = Simulation(load_scenario(tmp_path / "loaded.yaml", {path_of(name): x for name, x in LOADED.items()}))
+    free = Simulation(base)
+    with Host(export(base, tmp_path / "loaded.fmu")).start(LOADED) as host:
+        for _ in range(5):
+            assert host.step(0.5)["status"] == OK
+            simulation.step(0.5)
+            free.step(0.5)
+        compare(host, simulation)
+        assert abs(host.get("tip.y") - free.outputs["tip_y"]) > 1e-4
+        assert host.get("result.support_force_y") != 0
 
 
 def test_another_wire_brings_its_own_values(fmus):

@@ -39,6 +39,19 @@ def test_outputs_hold_every_quantity_of_the_table(cornered: Simulation) -> None:
     assert outputs["joint_torque"].shape == (40,)
 
 
+def test_outputs_without_the_shape_are_the_others(cornered: Simulation) -> None:
+    lean = Simulation(scenario(), shape=False)
+    cornered.reset()
+    for time in (0.0, IN_CONTACT):
+        for simulation in (cornered, lean):
+            simulation.advance(time)
+        few, all_of_them = lean.outputs, cornered.outputs
+        assert set(all_of_them) - set(few) == {*NODE_FIELDS, *JOINT_FIELDS}
+        for name in few:
+            assert few[name] == pytest.approx(all_of_them[name], rel=1e-14), name
+        assert (all_of_them["node_x"][-1], all_of_them["node_y"][-1]) == (all_of_them["tip_x"], all_of_them["tip_y"])
+
+
 def test_the_tip_starts_at_the_exit_and_follows_the_drive(cornered: Simulation) -> None:
     cornered.reset()
     assert cornered.time == 0.0

@@ -1,0 +1,90 @@
+"""An exported scenario with other values: those that a host sets, and those that a study puts into it.
+
+An exported scenario says everything: its drive is a table of times, and the wire has the catalogue's values written
+out. `opened` takes out what would stand against a value that is to be changed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Any
+
+from gw_exudyn.errors import Problem, ScenarioError, UsageError
+from gw_exudyn.fmi import variables as names
+from gw_exudyn.fmi.parameters import command_of, constant_drive, path_of
+from gw_exudyn.scenario import Scenario, scenario_from_dict
+
+_OF_THE_WIRE = ("diameter", "length", "density", "bending_stiffness")
+"""What a wire of the catalogue fills in, where a file does not give it."""
+
+
+def overridden(base: Scenario, changed: Mapping[str, Any]) -> Scenario:
+    """A scenario with other values of an FMU's parameters, by their names. Raises ScenarioError."""
+    plain = {path_of(name): value for name, value in changed.items() if not name.endswith(".factor")}
+    factors = {name: value for name, value in changed.items() if name.endswith(".factor")}
+    scenario = scenario_from_dict(opened(base, plain), plain)
+    return _scaled(scenario, factors) if factors else scenario
+
+
+def opened(base: Scenario, paths: Collection[str]) -> dict[str, Any]:
+    """A scenario as plain data into which other values can be put at these dotted paths.
+
+    A drive of one speed has a `speed` and a `distance` then, one of one force or tip speed that and a `duration`.
+    Raises ScenarioError for a drive that has no one speed or force.
+    """
+    data = base.to_dict()
+    if {"wire.model", "wire.length", "wire.estimate"} & set(paths):
+        _leave_to_the_catalogue(data["wire"], base, paths)
+    wanted = {"drive.speed", "drive.force", "drive.distance", "drive.duration"} & set(paths)
+    if wanted:
+        data["drive"] = _one_value(data["drive"], base, min(wanted))
+    return data
+
+
+def _one_value(drive: dict[str, Any], base: Scenario, path: str) -> dict[str, Any]:
+    """The drive with its one speed or force instead of a table of it."""
+    what, known = command_of(base), constant_drive(base)
+    if known is None:
+        text = f"the drive has no one {what}, but a table of it in time; change drive.table, or take another scenario"
+        raise ScenarioError(Problem(path, text))
+    kept = {name: value for name, value in drive.items() if name != "table"}
+    if base.drive.kind == "speed" and path != "drive.duration":
+        return {**kept, what: known, "distance": abs(known) * base.drive.duration}
+    return {**kept, what: known, "duration": base.drive.duration}
+
+
+def _leave_to_the_catalogue(wire: dict[str, Any], base: Scenario, paths: Collection[str]) -> None:
+    """Take out what the exported wire has from the catalogue, so that another model, length or estimate fills it in
+    anew."""
+    model = wire.get("model")
+    if model is None:
+        if "wire.model" in paths:
+            for name in _OF_THE_WIRE:
+                wire.pop(name, None)
+        return
+    known = scenario_from_dict({**base.to_dict(), "wire": {"model": model, "estimate": base.wire.estimate}}).wire
+    for name in _OF_THE_WIRE:
+        if name == "bending_stiffness":
+            ours, theirs = base.wire.bending_stiffness, known.bending_stiffness[: len(base.wire.bending_stiffness)]
+            same = all(a.value == b.value for a, b in zip(ours, theirs, strict=False))
+        else:
+            same = getattr(known, name) == getattr(base.wire, name)
+        if same:
+            wire.pop(name, None)
+
+
+def _scaled(scenario: Scenario, factors: Mapping[str, float]) -> Scenario:
+    """With the bending stiffness times the factors: one of all pieces, and one a piece."""
+    pieces = [piece.to_plain() for piece in scenario.wire.bending_stiffness]
+    for name, factor in factors.items():
+        if name == names.STIFFNESS_FACTOR:
+            chosen = pieces
+        else:
+            index = int(name.partition("[")[2].partition("]")[0])
+            if index >= len(pieces):
+                raise UsageError(f"{name}: the wire has {len(pieces)} pieces of bending stiffness; leave it at 1")
+            chosen = [pieces[index]]
+        for piece in chosen:
+            value = piece["value"]
+            piece["value"] = [factor * v for v in value] if isinstance(value, list) else factor * value
+    return scenario_from_dict(scenario.to_dict(), {"wire.bending_stiffness": pieces})
