@@ -29,7 +29,7 @@ from gw_exudyn.comparison import Course, at, course_of
 from gw_exudyn.scenario import load_scenario
 from gw_exudyn.simulation import simulate
 from gw_exudyn.sweep.folder import SweepFolder
-from gw_exudyn.sweep.run import Options
+from gw_exudyn.sweep.plan import Options
 
 SCENES = {"arc90": 0.2, "corner90-universal": 2.0}
 """Shipped scenarios, and the noise of forces in each, mN."""

@@ -28,9 +28,10 @@ import psutil
 sys.path.insert(0, str(Path(__file__).parent))
 from harness import machine, verdict
 
-from gw_exudyn.sweep.run import Options, Progress, run_sweep
+from gw_exudyn.sweep.plan import Options, Progress
+from gw_exudyn.sweep.run import run_sweep
 from gw_exudyn.sweep.runner import Outcome, SimulationRunner, Task
-from gw_exudyn.sweep.study_loading import load_study
+from gw_exudyn.sweep.studies.loading import load_study
 
 TIMES = "times.json"
 

@@ -27,14 +27,14 @@ from gw_exudyn.scenario.section import Section
 from gw_exudyn.scenario.units import NUMBER, parse_unit
 from gw_exudyn.scenario.words import did_you_mean, shown
 from gw_exudyn.scenario.yaml_source import Place, YamlSource, read_yaml
-from gw_exudyn.sweep.axes import Axis, read_number
-from gw_exudyn.sweep.design import grid, zipped
-from gw_exudyn.sweep.study import Study
-from gw_exudyn.sweep.study_form import Paths, folder_name
-from gw_exudyn.sweep.study_loading import NONE, read_base, read_fixed, read_form
-from gw_exudyn.sweep.study_loading import value_problems as problems_of_values
-from gw_exudyn.sweep.study_problems import told_once
-from gw_exudyn.sweep.value_kinds import value_kind
+from gw_exudyn.sweep.studies.axes import Axis, read_number
+from gw_exudyn.sweep.studies.design import grid, zipped
+from gw_exudyn.sweep.studies.form import Paths, folder_name
+from gw_exudyn.sweep.studies.loading import NONE, read_base, read_fixed, read_form
+from gw_exudyn.sweep.studies.loading import value_problems as problems_of_values
+from gw_exudyn.sweep.studies.problems import told_once
+from gw_exudyn.sweep.studies.study import Study
+from gw_exudyn.sweep.studies.value_kinds import value_kind
 
 TIP = "tip"
 """Stands in `noise` for both coordinates of the tip."""

@@ -15,7 +15,7 @@ from gw_exudyn.calibration.report import Report, report_of
 from gw_exudyn.calibration.simulations import simulations
 from gw_exudyn.sweep.folder import SweepFolder
 from gw_exudyn.sweep.identity import this_maker
-from gw_exudyn.sweep.run import Options
+from gw_exudyn.sweep.plan import Options
 
 Look = Callable[[Step, int], None]
 """Called with every point that was tried, and the simulations so far."""

@@ -12,9 +12,10 @@ from gw_exudyn.errors import Interrupted, ScenarioError
 from gw_exudyn.result import Floats
 from gw_exudyn.sweep.folder import SweepFolder, read_point
 from gw_exudyn.sweep.identity import Maker, this_maker
+from gw_exudyn.sweep.plan import Options, Plan, Progress, is_there
 from gw_exudyn.sweep.pool import Pool, pool
-from gw_exudyn.sweep.run import Options, Plan, Progress, Running, is_there
-from gw_exudyn.sweep.study import Study
+from gw_exudyn.sweep.run import Running
+from gw_exudyn.sweep.studies.study import Study
 from gw_exudyn.sweep.table import read_series
 
 

@@ -65,7 +65,7 @@ def command(
     from gw_exudyn.cli.stopping import Stop
     from gw_exudyn.cli.sweep_progress import cores
     from gw_exudyn.engine.library import exudyn
-    from gw_exudyn.sweep.run import Options
+    from gw_exudyn.sweep.plan import Options
 
     loaded = load_calibration(file, overrides)
     exudyn()

@@ -24,7 +24,7 @@ from gw_exudyn.errors import StorageError
 def command(output: str | None, study: bool) -> int:
     """Write the schema."""
     if study:
-        from gw_exudyn.sweep.study_form import study_schema
+        from gw_exudyn.sweep.studies.form import study_schema
 
         schema = study_schema()
     else:

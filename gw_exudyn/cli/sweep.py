@@ -13,8 +13,8 @@ from gw_exudyn.cli.console import put, put_json, put_table, tell
 from gw_exudyn.errors import Interrupted, SweepError
 
 if TYPE_CHECKING:
-    from gw_exudyn.sweep.run import Options, Plan, Summary
-    from gw_exudyn.sweep.study import Study
+    from gw_exudyn.sweep.plan import Options, Plan, Summary
+    from gw_exudyn.sweep.studies.study import Study
 
 SWEEPS = Path("results", "sweeps")
 """Where the folders of sweeps go under the current folder."""
@@ -73,9 +73,10 @@ def command(
     from gw_exudyn.cli.sweep_progress import checking, cores, running
     from gw_exudyn.engine.library import exudyn
     from gw_exudyn.sweep.fmu_runner import FMU, check_options, fmu_runner
-    from gw_exudyn.sweep.run import Options, make_plan, run_sweep
+    from gw_exudyn.sweep.plan import Options, make_plan
+    from gw_exudyn.sweep.run import run_sweep
     from gw_exudyn.sweep.runner import SIMULATION
-    from gw_exudyn.sweep.study_loading import load_study
+    from gw_exudyn.sweep.studies.loading import load_study
 
     if engine == "fmu":
         check_options(keep_runs, scheduler)

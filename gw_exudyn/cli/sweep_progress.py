@@ -12,7 +12,7 @@ from gw_exudyn.cli.console import stderr_console, tell
 from gw_exudyn.cli.stopping import Stop
 
 if TYPE_CHECKING:
-    from gw_exudyn.sweep.run import Options, Progress
+    from gw_exudyn.sweep.plan import Options, Progress
 
 _SECONDS_A_LINE = 10.0
 """Between two lines of progress where stderr is no terminal."""

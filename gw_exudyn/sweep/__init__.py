@@ -1,6 +1,6 @@
 """Sweeps: a scenario over a grid, a list or a sample of parameters, in parallel.
 
-The way of the data: `study_loading` (the file, checked) -> `study` (its points, by `design`) -> `run` (dask's `pool`
+The way of the data: `studies` (the file, checked, and its points) -> `plan` (which are missing) -> `run` (dask's `pool`
 hands points to workers) -> `worker` -> `point_process` (a child that runs one point after the other) -> `folder`
 (points on disk) -> `table`, `dataset`, `figures`, `sensitivity`. Names are loaded when they are first used.
 """
@@ -11,11 +11,18 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from gw_exudyn.sweep.run import Options, Summary, run_sweep
-    from gw_exudyn.sweep.study import Study
-    from gw_exudyn.sweep.study_loading import load_study
+    from gw_exudyn.sweep.plan import Options, Summary
+    from gw_exudyn.sweep.run import run_sweep
+    from gw_exudyn.sweep.studies.loading import load_study
+    from gw_exudyn.sweep.studies.study import Study
 
-_HOME = {"Options": "run", "Study": "study", "Summary": "run", "load_study": "study_loading", "run_sweep": "run"}
+_HOME = {
+    "Options": "plan",
+    "Study": "studies.study",
+    "Summary": "plan",
+    "load_study": "studies.loading",
+    "run_sweep": "run",
+}
 
 __all__ = ["Options", "Study", "Summary", "load_study", "run_sweep"]
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gw_exudyn.result import Floats
-from gw_exudyn.sweep.study import Study
+from gw_exudyn.sweep.studies.study import Study
 
 if TYPE_CHECKING:
     import xarray as xr

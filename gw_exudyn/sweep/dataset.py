@@ -14,10 +14,10 @@ import numpy as np
 from gw_exudyn.errors import StorageError
 from gw_exudyn.quantities import QUANTITIES, SERIES_COLUMNS
 from gw_exudyn.result import Floats
-from gw_exudyn.sweep.axes import Axis
 from gw_exudyn.sweep.folder import SweepFolder, as_storage_error
-from gw_exudyn.sweep.run import Plan
-from gw_exudyn.sweep.study import Study
+from gw_exudyn.sweep.plan import Plan
+from gw_exudyn.sweep.studies.axes import Axis
+from gw_exudyn.sweep.studies.study import Study
 from gw_exudyn.sweep.table import Table, read_series
 
 DATASET = "sweep.nc"

@@ -12,8 +12,8 @@ from typing import Any
 
 from gw_exudyn.storage.manifest import MANIFEST
 from gw_exudyn.sweep.folder import POINTS, read_point
-from gw_exudyn.sweep.run import Options, Plan
-from gw_exudyn.sweep.study import Study
+from gw_exudyn.sweep.plan import Options, Plan
+from gw_exudyn.sweep.studies.study import Study
 
 _TRIAL = 3.0
 """Seconds for which a point is run to measure its speed."""

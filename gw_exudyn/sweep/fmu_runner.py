@@ -20,7 +20,7 @@ from gw_exudyn.sweep.runner import Outcome, SimulationRunner, Task
 if TYPE_CHECKING:
     from gw_exudyn.fmi.session import FmuRun
     from gw_exudyn.scenario import Scenario
-    from gw_exudyn.sweep.study import Study
+    from gw_exudyn.sweep.studies.study import Study
 
 FMU = "gw_exudyn.sweep.fmu_runner:FmuRunner"
 """The runner, without the file of its FMU, which goes behind another colon."""

@@ -12,11 +12,11 @@ from gw_exudyn.errors import StorageError
 from gw_exudyn.storage.manifest import MANIFEST
 from gw_exudyn.storage.netcdf import DATA
 from gw_exudyn.sweep.dataset import DATASET, write_dataset
-from gw_exudyn.sweep.design import FOR_INDICES
 from gw_exudyn.sweep.folder import SweepFolder
 from gw_exudyn.sweep.page import EXTREMES, run_id
-from gw_exudyn.sweep.run import Options, Plan, Summary
-from gw_exudyn.sweep.study import Study
+from gw_exudyn.sweep.plan import Options, Plan, Summary
+from gw_exudyn.sweep.studies.design import FOR_INDICES
+from gw_exudyn.sweep.studies.study import Study
 from gw_exudyn.sweep.table import TABLE, Table, write_table
 
 RunWhole = Callable[[int], Mapping[str, bytes]]
@@ -42,7 +42,7 @@ def write_outputs(
 
         write_indices(study, table, place, summary)
     if options.figures:
-        from gw_exudyn.sweep.figures import write_figures
+        from gw_exudyn.sweep.figures.drawing import write_figures
 
         runs = _best_and_worst(study, plan, place, table, run_whole)
         write_figures(study, place, table, runs, summary)

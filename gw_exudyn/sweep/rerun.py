@@ -7,7 +7,7 @@ from typing import Any
 
 from gw_exudyn.errors import ScenarioError
 from gw_exudyn.scenario.yaml_source import parse_value
-from gw_exudyn.sweep.study import Study
+from gw_exudyn.sweep.studies.study import Study
 
 
 def rerun(study: Study) -> dict[str, Any]:

@@ -6,19 +6,18 @@ import csv
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib import import_module
-from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from gw_exudyn.result import Floats
-from gw_exudyn.sweep.axes import Axis
+from gw_exudyn.sweep.studies.axes import Axis
+from gw_exudyn.sweep.studies.salib import problem_of, salib
 
 if TYPE_CHECKING:
     from gw_exudyn.sweep.folder import SweepFolder
-    from gw_exudyn.sweep.run import Summary
-    from gw_exudyn.sweep.study import Study
+    from gw_exudyn.sweep.plan import Summary
+    from gw_exudyn.sweep.studies.study import Study
     from gw_exudyn.sweep.table import Table
 
 INDICES = "sensitivity.csv"
@@ -46,23 +45,6 @@ class Index:
     value: float
     confidence: float
     unit: str
-
-
-def missing_library() -> str | None:
-    """What to do where SALib is missing; None where it is there."""
-    if find_spec("SALib") is not None:
-        return None
-    return "needs the package SALib; pip install 'gw-exudyn[sensitivity]'"
-
-
-def salib(module: str) -> Any:
-    """A module of SALib."""
-    return import_module(f"SALib.{module}")
-
-
-def problem_of(axes: Sequence[Axis]) -> dict[str, Any]:
-    """The parameters as SALib names them, by their probabilities in the unit cube."""
-    return {"num_vars": len(axes), "names": [axis.path for axis in axes], "bounds": [[0.0, 1.0]] * len(axes)}
 
 
 def indices(study: Study, table: Table, metric: str, unit: str) -> tuple[list[Index], int]:

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from gw_exudyn.result import Floats
 from gw_exudyn.storage.series import SERIES
 from gw_exudyn.sweep.folder import SweepFolder, as_storage_error, read_point
-from gw_exudyn.sweep.run import Failure, Plan, Summary, note_failure
-from gw_exudyn.sweep.study import Study
+from gw_exudyn.sweep.plan import Failure, Plan, Summary, note_failure
+from gw_exudyn.sweep.studies.study import Study
 
 TABLE = "sweep.csv"
 NOT_RUN = "not_run"

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import gw_exudyn
-from gw_exudyn.sweep.study import Study
-from gw_exudyn.sweep.study_loading import load_study
+from gw_exudyn.sweep.studies.loading import load_study
+from gw_exudyn.sweep.studies.study import Study
 
 HERE = Path(__file__).parent
 PATHS = os.pathsep.join([str(Path(gw_exudyn.__file__).parents[1]), str(HERE)])

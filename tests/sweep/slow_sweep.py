@@ -3,8 +3,9 @@
 import sys
 from pathlib import Path
 
-from gw_exudyn.sweep.run import Options, run_sweep
-from gw_exudyn.sweep.study_loading import load_study
+from gw_exudyn.sweep.plan import Options
+from gw_exudyn.sweep.run import run_sweep
+from gw_exudyn.sweep.studies.loading import load_study
 
 OPTIONS = Options(jobs=2, figures=False, runner="odd_runners:SlowRunner")
 

@@ -7,8 +7,9 @@ import pytest
 import xarray as xr
 
 from gw_exudyn.sweep.bands import band
-from gw_exudyn.sweep.figures import wanted
-from gw_exudyn.sweep.run import Options, run_sweep
+from gw_exudyn.sweep.figures.drawing import wanted
+from gw_exudyn.sweep.plan import Options
+from gw_exudyn.sweep.run import run_sweep
 from gw_exudyn.sweep.sensitivity import indices
 from gw_exudyn.sweep.table import Table
 

@@ -7,8 +7,8 @@ import pytest
 
 from gw_exudyn.errors import ScenarioError, UsageError
 from gw_exudyn.sweep.identity import Maker, this_maker
-from gw_exudyn.sweep.run import Options, make_plan
-from gw_exudyn.sweep.study_loading import load_study
+from gw_exudyn.sweep.plan import Options, make_plan
+from gw_exudyn.sweep.studies.loading import load_study
 
 MAKER = Maker("runner", {"exudyn": "1"}, "abc")
 

@@ -19,8 +19,9 @@ from gw_exudyn.metrics import metrics
 from gw_exudyn.simulation import simulate
 from gw_exudyn.storage import read_run
 from gw_exudyn.sweep.folder import SweepFolder
-from gw_exudyn.sweep.run import Options, run_sweep
-from gw_exudyn.sweep.study_loading import load_study
+from gw_exudyn.sweep.plan import Options
+from gw_exudyn.sweep.run import run_sweep
+from gw_exudyn.sweep.studies.loading import load_study
 
 OUT = Path("out")
 PLAIN = Options(jobs=1, figures=False)

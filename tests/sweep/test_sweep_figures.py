@@ -8,11 +8,11 @@ import xarray as xr
 from matplotlib.colors import to_hex
 
 from gw_exudyn.plots.style import VERMILLION
-from gw_exudyn.sweep.plot_curves import plot_curves
-from gw_exudyn.sweep.plot_extremes import LETTERS, title_of
-from gw_exudyn.sweep.plot_indices import plot_indices
-from gw_exudyn.sweep.plot_metrics import plot_map, plot_response
-from gw_exudyn.sweep.plot_scales import short
+from gw_exudyn.sweep.figures.curves import plot_curves
+from gw_exudyn.sweep.figures.extremes import LETTERS, title_of
+from gw_exudyn.sweep.figures.indices import plot_indices
+from gw_exudyn.sweep.figures.metrics import plot_map, plot_response
+from gw_exudyn.sweep.figures.scales import short
 from gw_exudyn.sweep.table import Table
 
 

@@ -18,7 +18,8 @@ from gw_exudyn.scenario import load_scenario
 from gw_exudyn.simulation import simulate
 from gw_exudyn.sweep import load_study
 from gw_exudyn.sweep.page import page_of, save_study_page
-from gw_exudyn.sweep.run import Options, run_sweep
+from gw_exudyn.sweep.plan import Options
+from gw_exudyn.sweep.run import run_sweep
 
 OUT = Path("out")
 TRIVIAL = "{wire.segments: 5, solver.step: 0.5 s, output.interval: 0.5 s, drive.distance: 4 mm}"

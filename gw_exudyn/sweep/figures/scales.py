@@ -9,10 +9,10 @@ import numpy as np
 from gw_exudyn.plots.style import axis_label, shown
 from gw_exudyn.quantities import LIKE, plain
 from gw_exudyn.result import Floats
-from gw_exudyn.sweep.axes import Axis
+from gw_exudyn.sweep.studies.axes import Axis
 
 if TYPE_CHECKING:
-    from gw_exudyn.sweep.study import Study
+    from gw_exudyn.sweep.studies.study import Study
 
 COLOUR_MAP = "cividis"
 """Told apart with any colour vision, and in grey."""

@@ -20,12 +20,12 @@ from gw_exudyn.scenario.section import Section
 from gw_exudyn.scenario.shipped import shipped_folder
 from gw_exudyn.scenario.words import did_you_mean, nearest, shown
 from gw_exudyn.scenario.yaml_source import Place, YamlSource, read_yaml
-from gw_exudyn.sweep.axes import Axis, read_axis
-from gw_exudyn.sweep.design import MOST_POINTS, Design, grid, sampled, zipped
-from gw_exudyn.sweep.point_list import read_points
-from gw_exudyn.sweep.study import Study, base_file
-from gw_exudyn.sweep.study_form import StudyForm, check_form
-from gw_exudyn.sweep.study_problems import AT_POINT, MOST_PROBLEMS, ProblemList, told_once
+from gw_exudyn.sweep.studies.axes import Axis, read_axis
+from gw_exudyn.sweep.studies.design import MOST_POINTS, Design, grid, sampled, zipped
+from gw_exudyn.sweep.studies.form import StudyForm, check_form
+from gw_exudyn.sweep.studies.point_list import read_points
+from gw_exudyn.sweep.studies.problems import AT_POINT, MOST_PROBLEMS, ProblemList, told_once
+from gw_exudyn.sweep.studies.study import Study, base_file
 
 STUDIES = "studies"
 """The folder of shipped studies beside the shipped scenarios."""

@@ -16,7 +16,7 @@ from gw_exudyn.scenario.faults import Faults
 from gw_exudyn.scenario.units import parse_number, parse_unit
 from gw_exudyn.scenario.words import shown
 from gw_exudyn.scenario.yaml_source import Place, parse_value, read_text
-from gw_exudyn.sweep.axes import Axis, read_axis
+from gw_exudyn.sweep.studies.axes import Axis, read_axis
 
 LARGEST = 100_000_000
 """Bytes of a CSV file of points."""

@@ -14,8 +14,8 @@ from gw_exudyn.scenario.fields import Choice, Kind, Table, Text, Whole
 from gw_exudyn.scenario.schema import schema_of
 from gw_exudyn.scenario.section import Section
 from gw_exudyn.scenario.words import shown
-from gw_exudyn.sweep.axes import Axis, axis_schema
-from gw_exudyn.sweep.design import FOR_INDICES, METHODS, MOST_POINTS, count_of
+from gw_exudyn.sweep.studies.axes import Axis, axis_schema
+from gw_exudyn.sweep.studies.design import FOR_INDICES, METHODS, MOST_POINTS, count_of
 
 MODES = ("grid", "zip", "list", "sample")
 
@@ -135,7 +135,7 @@ def _check_sample(form: StudyForm, faults: Faults) -> None:
     if total > MOST_POINTS:
         faults.add(("samples",), f"makes {total} points; at most {MOST_POINTS} are allowed")
     if form.method in FOR_INDICES:
-        from gw_exudyn.sweep.sensitivity import missing_library
+        from gw_exudyn.sweep.studies.salib import missing_library
 
         missing = missing_library()
         if missing:

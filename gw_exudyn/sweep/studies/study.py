@@ -16,9 +16,9 @@ from gw_exudyn.scenario.loading import scenario_from_source
 from gw_exudyn.scenario.overrides import OVERRIDE
 from gw_exudyn.scenario.shipped import resolve
 from gw_exudyn.scenario.yaml_source import Place, YamlSource
-from gw_exudyn.sweep.design import Design
-from gw_exudyn.sweep.metric_names import metric_table
-from gw_exudyn.sweep.study_problems import AT_POINT
+from gw_exudyn.sweep.studies.design import Design
+from gw_exudyn.sweep.studies.metric_names import metric_table
+from gw_exudyn.sweep.studies.problems import AT_POINT
 
 
 @dataclass(frozen=True)

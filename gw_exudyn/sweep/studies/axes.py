@@ -16,8 +16,8 @@ from gw_exudyn.scenario.faults import Faults, wrong
 from gw_exudyn.scenario.fields import as_float, is_number
 from gw_exudyn.scenario.units import parse_quantity
 from gw_exudyn.scenario.words import did_you_mean, shown
-from gw_exudyn.sweep.distributions import FORMS, Distribution, describe, is_pure
-from gw_exudyn.sweep.value_kinds import ValueKind, value_kind
+from gw_exudyn.sweep.studies.distributions import FORMS, Distribution, describe, is_pure
+from gw_exudyn.sweep.studies.value_kinds import ValueKind, value_kind
 
 MOST_VALUES = 100_000
 SPACED = ("linspace", "logspace")

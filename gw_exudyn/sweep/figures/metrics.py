@@ -9,9 +9,9 @@ import numpy as np
 
 from gw_exudyn.plots.style import BLUE, NOTE_COLOUR, VERMILLION, new_figure, tidy
 from gw_exudyn.result import Floats
-from gw_exudyn.sweep.axes import Axis
-from gw_exudyn.sweep.plot_scales import COLOUR_MAP, axis_scaled, metric_scaled, short
-from gw_exudyn.sweep.study import Study
+from gw_exudyn.sweep.figures.scales import COLOUR_MAP, axis_scaled, metric_scaled, short
+from gw_exudyn.sweep.studies.axes import Axis
+from gw_exudyn.sweep.studies.study import Study
 from gw_exudyn.sweep.table import Table
 
 if TYPE_CHECKING:

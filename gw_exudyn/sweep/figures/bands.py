@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from gw_exudyn.plots.style import BLUE, axis_label, new_figure, shown, tidy
 from gw_exudyn.sweep.bands import band
-from gw_exudyn.sweep.plot_curves import QUANTITIES_DRAWN
-from gw_exudyn.sweep.study import Study
+from gw_exudyn.sweep.figures.curves import QUANTITIES_DRAWN
+from gw_exudyn.sweep.studies.study import Study
 
 if TYPE_CHECKING:
     import xarray as xr

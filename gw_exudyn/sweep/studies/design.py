@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gw_exudyn.result import Floats
-from gw_exudyn.sweep.axes import Axis
+from gw_exudyn.sweep.studies.axes import Axis
 
 MOST_POINTS = 100_000
 METHODS = ("latin-hypercube", "sobol", "sobol-indices", "morris")
@@ -99,7 +99,7 @@ def _unit_cube(axes: Sequence[Axis], method: str, samples: int, seed: int) -> Fl
 
 def _for_indices(axes: Sequence[Axis], method: str, samples: int, seed: int) -> Floats:
     """Saltelli's scheme without second-order indices, or Morris' trajectories, in the unit cube, by SALib."""
-    from gw_exudyn.sweep.sensitivity import problem_of, salib
+    from gw_exudyn.sweep.studies.salib import problem_of, salib
 
     problem = problem_of(axes)
     if method == "sobol-indices":

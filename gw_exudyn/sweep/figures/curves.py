@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from gw_exudyn.plots.style import LINE_STYLES, RESULT_COLOURS, VERMILLION, axis_label, new_figure, shown, tidy
 from gw_exudyn.result import Floats
-from gw_exudyn.sweep.axes import Axis
 from gw_exudyn.sweep.dataset import METRIC
-from gw_exudyn.sweep.plot_scales import COLOUR_MAP, axis_scaled
-from gw_exudyn.sweep.study import Study
+from gw_exudyn.sweep.figures.scales import COLOUR_MAP, axis_scaled
+from gw_exudyn.sweep.studies.axes import Axis
+from gw_exudyn.sweep.studies.study import Study
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from gw_exudyn.errors import StorageError
 from gw_exudyn.sweep.dataset import DATASET
 from gw_exudyn.sweep.folder import SweepFolder
-from gw_exudyn.sweep.run import Summary
-from gw_exudyn.sweep.study import Study
+from gw_exudyn.sweep.plan import Summary
+from gw_exudyn.sweep.studies.study import Study
 from gw_exudyn.sweep.table import Table
 
 if TYPE_CHECKING:
@@ -47,9 +47,9 @@ def wanted(
     study: Study, table: Table, runs: Mapping[str, Path], dataset: xr.Dataset
 ) -> dict[str, Callable[[], Figure | None]]:
     """The figures that fit a study, by name, each as what draws it; None where there is nothing to draw."""
-    from gw_exudyn.sweep.plot_bands import plot_bands
-    from gw_exudyn.sweep.plot_curves import plot_curves
-    from gw_exudyn.sweep.plot_metrics import plot_map, plot_matrix, plot_response
+    from gw_exudyn.sweep.figures.bands import plot_bands
+    from gw_exudyn.sweep.figures.curves import plot_curves
+    from gw_exudyn.sweep.figures.metrics import plot_map, plot_matrix, plot_response
 
     axes = study.design.axes
     figures: dict[str, Callable[[], Figure | None]] = {"curves": lambda: plot_curves(study, dataset)}
@@ -62,11 +62,11 @@ def wanted(
     if study.mode == "sample":
         figures["bands"] = lambda: plot_bands(study, dataset)
         if study.method not in ("latin-hypercube", "sobol"):
-            from gw_exudyn.sweep.plot_indices import plot_indices
+            from gw_exudyn.sweep.figures.indices import plot_indices
 
             figures["sensitivity"] = lambda: plot_indices(study, table)
     if runs:
-        from gw_exudyn.sweep.plot_extremes import plot_extremes
+        from gw_exudyn.sweep.figures.extremes import plot_extremes
 
         figures["best_and_worst"] = lambda: plot_extremes(study, runs)
     return figures

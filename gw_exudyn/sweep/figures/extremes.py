@@ -9,8 +9,8 @@ from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from gw_exudyn.metrics import metrics
-from gw_exudyn.sweep.plot_scales import metric_words, value_words
-from gw_exudyn.sweep.study import Study
+from gw_exudyn.sweep.figures.scales import metric_words, value_words
+from gw_exudyn.sweep.studies.study import Study
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gw_exudyn.plots.style import BLUE, ORANGE, new_figure, tidy
-from gw_exudyn.sweep.axes import Axis
-from gw_exudyn.sweep.plot_scales import axis_name, scaled
+from gw_exudyn.sweep.figures.scales import axis_name, scaled
 from gw_exudyn.sweep.sensitivity import Index, indices
-from gw_exudyn.sweep.study import Study
+from gw_exudyn.sweep.studies.axes import Axis
+from gw_exudyn.sweep.studies.study import Study
 from gw_exudyn.sweep.table import Table
 
 if TYPE_CHECKING:
