@@ -188,7 +188,9 @@ class Newton:
 
     def _evaluate(self, q: Floats, q_t: Floats, *, guessed: bool) -> None:
         self._move(q, q_t)
-        self._contact.evaluate(1.0, velocity_factor(self._step), predicted=guessed, followed=not guessed)
+        # Far from the end contacts are taken as they are: on the way they decide to which side a wire buckles.
+        followed = not guessed and self._near_end
+        self._contact.evaluate(1.0, velocity_factor(self._step), predicted=guessed, followed=followed)
         self._loads.evaluate(self._contact.motion)
 
     def _move(self, q: Floats, q_t: Floats) -> None:
@@ -226,8 +228,12 @@ class Newton:
             self._force += self._loads.force
             self._tangent += self._loads.tangent.reshape(-1)
         self._reaction = np.asarray(self._data.GetAECoordinates())[self._system.hub.constraints :]
-        far = self._last_move > _NEAR * self._radius
-        self._contact.add_turning(self._tangent, self._reaction, stiffening=far)
+        self._contact.add_turning(self._tangent, self._reaction, stiffening=not self._near_end)
+
+    @property
+    def _near_end(self) -> bool:
+        """Newton's last step was a small one."""
+        return self._last_move <= _NEAR * self._radius
 
     def _after_newton(self, _mbs: Any, _time: float) -> list[float]:
         """Refuse what converged to the wrong thing; the step is then cut."""

@@ -118,3 +118,13 @@ def test_a_step_is_given_up_where_newton_has_gone_further_than_a_step_may():
     after = [following for (count, far), (following, _) in pairwise(calls) if count >= 3 and far]
     assert after
     assert set(after) == {0}
+
+
+def test_contacts_on_the_way_do_not_send_the_wire_to_the_other_side():
+    """Few stiff segments, pushed square against a wall: they buckle towards the open end, as the rest curvature bends
+    them, not into the corner opposite."""
+    stiff = {"model": "amplatz-super-stiff", "segments": 20}
+    case = scenario(contact={"friction_coefficient": 0.1}, solver={"step": 0.05})
+    stepper = Stepper(build(case.model_copy(update={"wire": type(case.wire).model_validate(stiff)})))
+    assert stepper.advance(14.0)
+    assert stepper.tip()[1] > 2e-3
