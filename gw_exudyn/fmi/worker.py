@@ -71,7 +71,7 @@ def serve(channel: Channel, make: Callable[[], Plant]) -> None:
 
 
 def _refuse(channel: Channel, sentence: str) -> None:
-    channel.reply(words.REFUSED, rest=sentence.encode())
+    channel.reply(words.REFUSED, rest=sentence.encode("utf-8", "replace"))
 
 
 def _answer(channel: Channel, plant: Plant, request: Request) -> None:

@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from fmpy.validation import validate_fmu
 from hosts import Host
+from standin import sanitizers
 from test_hosts import BARE, NAMES, STEP, STEPS, build
 
 from gw_exudyn.errors import UsageError
@@ -47,6 +48,9 @@ def test_it_runs_in_a_root_with_nothing_but_the_c_library(bundled, fmus, tmp_pat
     loader = re.search(r"(/lib\S*/ld-linux\S+)", linked)[1]
     binds = [item for name in ("libc.so.6", "libm.so.6", "libdl.so.2", "libpthread.so.0", "librt.so.1", "libutil.so.1")
              for item in ("--ro-bind", str(libc / name), str(libc / name)) if (libc / name).exists()]  # fmt: skip
+    if sanitizers():  # `make sanitize`: the host brings their libraries, and what these need
+        found = re.findall(r"=> (/\S+)", linked)
+        binds += [item for path in found for item in ("--ro-bind", path, path) if path not in binds]
     box = ["bwrap", "--unshare-all", "--die-with-parent", "--clearenv", "--dev", "/dev", "--proc", "/proc"]
     box += ["--ro-bind", loader, loader, *binds, "--bind", str(tmp_path), "/own"]
     if subprocess.run([*box, "/own/host"], capture_output=True, check=False).returncode != 2:
