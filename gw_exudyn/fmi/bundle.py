@@ -20,6 +20,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from gw_exudyn.errors import UsageError
+from gw_exudyn.fmi.legal import own_licence
 
 FOLDER = "worker"
 """The frozen worker's folder in the FMU's resources; its program bears the same name."""
@@ -37,7 +38,7 @@ _LEFT_OUT = (
     "tkinter", "xarray", "ziglang",
 )  # fmt: skip
 _PARTS = ("gw_exudyn.fmi.worker", "gw_exudyn.fmi.plant", "exudyn.exudynCPP", "shapely")
-_SHOWN = ("gw-exudyn", "exudyn", "numpy", "pydantic", "pydantic_core", "shapely", "PyYAML", "typing_extensions",
+_SHOWN = ("exudyn", "numpy", "pydantic", "pydantic_core", "shapely", "PyYAML", "typing_extensions",
           "annotated-types", "typing-inspection", "pyinstaller")  # fmt: skip
 _ENTRY = "import sys\nfrom gw_exudyn.fmi.worker import main\nmain(sys.argv[1:])\n"
 
@@ -115,9 +116,7 @@ def glibc_need(files: Mapping[str, bytes]) -> str:
 def licences(files: Mapping[str, bytes]) -> str:
     """The licences of what is frozen: of the Python packages, of Python, and of the system's libraries."""
     parts = [f"What runs this FMU, in resources/{FOLDER}, is made of the following, each under its own licence.\n"]
-    own = Path(__file__).resolve().parents[2] / "LICENSE"  # a source tree; installed, it is among the package's files
-    if own.is_file():
-        parts.append(_heading("gw-exudyn") + own.read_text(encoding="utf-8"))
+    parts.append(_heading("gw-exudyn") + own_licence())
     parts.append(_heading(f"Python {platform.python_version()}") + _python_licence())
     for name in _SHOWN:
         try:
