@@ -12,13 +12,14 @@ from pathlib import Path
 
 import pytest
 from fmpy.validation import validate_fmu
-from hosts import Host
+from hosts import OK, WARNING, Host
 from standin import sanitizers
 from test_hosts import BARE, NAMES, STEP, STEPS, build
 
 from gw_exudyn.errors import UsageError
 from gw_exudyn.fmi import bundle
 from gw_exudyn.fmi.export import export
+from gw_exudyn.scenario import list_shipped
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="FMUs are bundled on Linux alone")
 
@@ -75,6 +76,17 @@ def test_what_it_holds(bundled):
     assert not [name for name in names if "readline" in name]
     for part in ("exudyn", "numpy", "shapely", "Python 3", "libstdc++"):
         assert f"\n{part}" in text
+
+
+def test_every_shipped_scenario_runs_in_it(bundled):
+    """What is left out of it is needed by none."""
+    with Host(bundled).instantiate() as host:
+        for name in list_shipped():
+            host.start({"scenarioFile": name})
+            end = host.step(0.05)
+            assert end["status"] in (OK, WARNING), (name, host.messages)
+            assert host.get("solver.steps") > 0
+            host.calls.reset()
 
 
 def test_a_system_that_is_too_old_is_told_what_it_needs(bundled):
