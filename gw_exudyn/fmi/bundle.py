@@ -38,14 +38,15 @@ _LEFT_OUT = (
     "exudyn.utilities", "fmpy", "ftplib", "getpass", "gw_exudyn.comparison",
     "gw_exudyn.metrics", "gw_exudyn.plots", "gw_exudyn.storage", "gymnasium", "h5netcdf", "h5py", "http", "hypothesis",
     "lxml", "matplotlib", "mpl_toolkits", "mujoco", "multiprocessing", "mypy", "netrc", "numpy.f2py", "numpy.testing",
-    "pandas", "pdb", "pip", "pkgutil", "psutil", "py_compile", "pydantic.experimental", "pydantic.mypy", "pydantic.v1",
+    "pandas", "pdb", "pip", "psutil", "py_compile", "pydantic.experimental", "pydantic.mypy", "pydantic.v1",
     "pydoc", "pydoc_data", "pytest", "readline", "rich", "runpy", "scipy", "setuptools", "socketserver", "sqlite3",
     "ssl", "tarfile", "tkinter", "unittest", "urllib.request", "webbrowser", "xarray", "xml.sax", "xmlrpc", "ziglang",
 )  # fmt: skip
-_PARTS = ("gw_exudyn.fmi.worker", "gw_exudyn.fmi.plant", "exudyn.exudynCPP", "shapely")
+# pkgutil is asked for by the package svg in a way that is not seen.
+_PARTS = ("gw_exudyn.fmi.worker", "gw_exudyn.fmi.plant", "exudyn.exudynCPP", "pkgutil", "shapely")
 _SHOWN = ("exudyn", "numpy", "pydantic", "pydantic_core", "shapely", "PyYAML", "typing_extensions",
           "annotated-types", "typing-inspection", "pyinstaller")  # fmt: skip
-# Its graph of modules is never freed; looking for what could be takes a sixth of its time.
+# Its graph of modules is never freed; looking for what could be only takes time.
 _FREEZE = "import gc; gc.disable(); from PyInstaller.__main__ import run; run()"
 _ENTRY = "import sys\nfrom gw_exudyn.fmi.worker import main\nmain(sys.argv[1:])\n"
 

@@ -78,10 +78,23 @@ def test_what_it_holds(bundled):
         assert f"\n{part}" in text
 
 
-def test_every_shipped_scenario_runs_in_it(bundled):
+DRAWN = """
+name: drawn
+wire: {model: universal-ii, segments: 20}
+vessel: {kind: polygon, file: lumen.svg, length: 120 mm}
+catheter: {exit: [1 mm, 2 mm], direction: 0 deg, bore: 1.2 mm}
+contact: {friction_coefficient: 0.4}
+drive: {kind: speed, speed: 2 mm/s, distance: 10 mm}
+"""
+
+
+def test_every_shipped_scenario_runs_in_it_and_one_with_a_drawing(bundled, tmp_path):
     """What is left out of it is needed by none."""
+    (tmp_path / "drawn.yaml").write_text(DRAWN)
+    path = '<path d="M 0 80 L 32 80 V 20 h -4 v 56 H 0 Z"/>'
+    (tmp_path / "lumen.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 120 80">{path}</svg>')
     with Host(bundled).instantiate() as host:
-        for name in list_shipped():
+        for name in (*list_shipped(), str(tmp_path / "drawn.yaml")):
             host.start({"scenarioFile": name})
             end = host.step(0.05)
             assert end["status"] in (OK, WARNING), (name, host.messages)

@@ -27,27 +27,44 @@ static void log3(fmi3InstanceEnvironment e, fmi3Status s, fmi3String category, f
 
 enum { MOST = 4096 };
 
-static void read2(fmi2Component c, fmi2ValueReference reference) {
+/* A variable by the getter of its type, and by one of another: `kind` is one of KIND_... */
+static void read2(fmi2Component c, fmi2ValueReference reference, char kind) {
     fmi2Real real;
     fmi2Integer integer;
     fmi2Boolean boolean;
     fmi2String text;
-    fmi2GetReal(c, &reference, 1, &real);
-    fmi2GetInteger(c, &reference, 1, &integer);
-    fmi2GetBoolean(c, &reference, 1, &boolean);
-    if (fmi2GetString(c, &reference, 1, &text) == fmi2OK) use(text);
+    if (kind == KIND_REAL) fmi2GetReal(c, &reference, 1, &real);
+    if (kind == KIND_INTEGER) fmi2GetInteger(c, &reference, 1, &integer);
+    if (kind == KIND_BOOLEAN) fmi2GetBoolean(c, &reference, 1, &boolean);
+    if (kind == KIND_TEXT && fmi2GetString(c, &reference, 1, &text) == fmi2OK) use(text);
 }
 
-static void read3(fmi3Instance c, fmi3ValueReference reference, size_t size) {
+static void read3(fmi3Instance c, fmi3ValueReference reference, char kind, size_t size) {
     static fmi3Float64 reals[MOST];
     static fmi3Int32 integers[MOST];
     static bool booleans[MOST];
     fmi3String text;
     if (size > MOST) return;
-    fmi3GetFloat64(c, &reference, 1, reals, size);
-    fmi3GetInt32(c, &reference, 1, integers, size);
-    fmi3GetBoolean(c, &reference, 1, booleans, size);
-    if (fmi3GetString(c, &reference, 1, &text, 1) == fmi3OK) use(text);
+    if (kind == KIND_REAL) fmi3GetFloat64(c, &reference, 1, reals, size);
+    if (kind == KIND_INTEGER) fmi3GetInt32(c, &reference, 1, integers, size);
+    if (kind == KIND_BOOLEAN) fmi3GetBoolean(c, &reference, 1, booleans, size);
+    if (kind == KIND_TEXT && fmi3GetString(c, &reference, 1, &text, 1) == fmi3OK) use(text);
+}
+
+static void read_all(int version, const Instance *instance, void *c) {
+    static const char KINDS[] = {KIND_REAL, KIND_INTEGER, KIND_BOOLEAN, KIND_TEXT};
+    size_t count = instance->table.n_variables;
+    for (size_t i = 0; i < count; i++) {
+        const Variable *variable = &instance->table.variables[i];
+        if (version == 2) read2(c, (fmi2ValueReference)i, (char)variable->kind);
+        else read3(c, (fmi3ValueReference)i, (char)variable->kind, variable->size);
+    }
+    /* One that is of another type for all but one, and one that is not there. */
+    for (size_t k = 0; k < sizeof KINDS; k++)
+        for (size_t i = 0; i <= count; i += count > 0 ? count : 1) {
+            if (version == 2) read2(c, (fmi2ValueReference)i, KINDS[k]);
+            else read3(c, (fmi3ValueReference)i, KINDS[k], 1);
+        }
 }
 
 static void write3(fmi3Instance c, fmi3ValueReference reference, size_t size) {
@@ -131,11 +148,7 @@ void drive(int version, const char *token, Piece calls) {
     for (size_t i = 0; i < calls.size; i++) {
         const Instance *instance = c;
         call(version, c, calls.data[i], &state, &time);
-        for (size_t k = 0; k <= instance->table.n_variables; k++) {
-            size_t size = k < instance->table.n_variables ? instance->table.variables[k].size : 1;
-            if (version == 2) read2(c, (fmi2ValueReference)k);
-            else read3(c, (fmi3ValueReference)k, size);
-        }
+        read_all(version, instance, c);
         if (!isfinite(instance->time)) abort();
     }
     if (version == 2) fmi2FreeInstance(c);

@@ -1,4 +1,5 @@
-/* What a worker sends: the first byte says which version and how many calls, then come the calls, then the frames. */
+/* What a worker sends: the first byte says which version and how many calls (15 at most), then come the calls, then the
+ * frames. */
 #include "memory.h"
 
 #include "table.h"
@@ -15,7 +16,7 @@ int LLVMFuzzerInitialize(int *count, char ***arguments) {
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     size_t calls;
     if (size < 1) return 0;
-    calls = data[0] >> 2;
+    calls = data[0] >> 2 & 15;
     if (calls > size - 1) calls = size - 1;
     memory_silent = data[0] >> 1 & 1;
     memory_worker = (Piece){data + 1 + calls, size - 1 - calls};
