@@ -49,11 +49,12 @@ paper: $(VENV)/.ready-dev
 test: $(VENV)/.ready-dev
 	$(BIN)/python -m pytest -n auto
 
-# The library of AddressSanitizer has to be in the host, Python here, before the wrapper is; Python itself leaks.
+# The library of AddressSanitizer has to be in the host, Python here, before the wrapper is; Python itself leaks. What it
+# finds it says on stderr, and ends the host.
 sanitize: $(VENV)/.ready-dev
 	GW_FMU_SANITIZE=1 ASAN_OPTIONS=detect_leaks=0 \
 	  LD_PRELOAD="`gcc -print-file-name=libasan.so` `gcc -print-file-name=libstdc++.so`" \
-	  $(BIN)/python -m pytest -n auto tests/fmu
+	  $(BIN)/python -m pytest -n auto --capture=sys tests/fmu
 
 fuzz: $(VENV)/.ready-dev
 	$(BIN)/python tests/fmu/fuzz/fuzz.py --seconds $(FUZZ_SECONDS)

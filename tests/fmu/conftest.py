@@ -54,7 +54,7 @@ def native() -> Path:
 @pytest.fixture(scope="session")
 def standin(tmp_path_factory) -> Path:
     """A folder of resources whose worker is the stand-in."""
-    folder = tmp_path_factory.mktemp("gw-fmu-test-standin")
+    folder = tmp_path_factory.mktemp("gw-standin")
     program = stand.compile_c(Path(stand.__file__).with_name("standin.c"), folder / "program")
     return stand.resources(folder / "resources", program)
 

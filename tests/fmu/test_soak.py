@@ -52,7 +52,7 @@ def worker(request, standin) -> Worker:
 
 @pytest.fixture(scope="session")
 def real(fmus, tmp_path_factory) -> Worker:
-    folder = tmp_path_factory.mktemp("gw-fmu-test-real")
+    folder = tmp_path_factory.mktemp("gw-soak-real")
     with zipfile.ZipFile(fmus[2]) as archive:
         archive.extractall(folder)
     return Worker("real", folder / "resources", read_model_description(str(folder)).guid)
@@ -63,7 +63,7 @@ def python(tmp_path_factory) -> Worker:
     """The real worker's process with an empty model: what it does about its host is all there."""
     script = Path(__file__).resolve().parents[2] / "benchmarks" / "empty_worker.py"
     package = script.parents[1]
-    folder = tmp_path_factory.mktemp("gw-fmu-test-python")
+    folder = tmp_path_factory.mktemp("gw-soak-python")
     launch = Launch(sys.executable, str(package), "", arguments=("-P", str(script)))
     from gw_exudyn import __version__
 
