@@ -3,12 +3,13 @@
 PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
+FUZZ_SECONDS ?= 60
 RUNS := results/runs
 WIRES := phantom-universal phantom-amplatz
 BOTH := $(WIRES:%=$(RUNS)/%)
 STUDY := fig4 fig6 fig8 fig9 table2 reach pull_back constant_force uncertainty findings page
 
-.PHONY: help run figure paper test verify mutate lint format kernels wrappers clean
+.PHONY: help run figure paper test sanitize fuzz soak verify mutate lint format kernels wrappers clean
 .DELETE_ON_ERROR:
 
 help:
@@ -16,6 +17,9 @@ help:
 	@echo "make figure   run both and draw docs/figures/phantom.png, the figure of the README"
 	@echo "make paper    rerun the study of Sharei et al. 2019: every figure and table into results/paper/index.html"
 	@echo "make test     run the test suite"
+	@echo "make sanitize run the FMU's tests with a wrapper that finds its own errors in memory (needs gcc)"
+	@echo "make fuzz     feed the FMU's wrapper with what nobody would send, for FUZZ_SECONDS (needs clang)"
+	@echo "make soak     a thousand instances of the FMU and hundreds of kills (takes half an hour)"
 	@echo "make verify   show and write the evidence that the physics is right"
 	@echo "make mutate   make errors in the physics on purpose, and see that tests notice each"
 	@echo "make lint     check style and types"
@@ -44,6 +48,19 @@ paper: $(VENV)/.ready-dev
 
 test: $(VENV)/.ready-dev
 	$(BIN)/python -m pytest -n auto
+
+# The library of AddressSanitizer has to be in the host, Python here, before the wrapper is; Python itself leaks. What it
+# finds it says on stderr, and ends the host.
+sanitize: $(VENV)/.ready-dev
+	GW_FMU_SANITIZE=1 ASAN_OPTIONS=detect_leaks=0 \
+	  LD_PRELOAD="`gcc -print-file-name=libasan.so` `gcc -print-file-name=libstdc++.so`" \
+	  $(BIN)/python -m pytest -n auto --capture=sys tests/fmu
+
+fuzz: $(VENV)/.ready-dev
+	$(BIN)/python tests/fmu/fuzz/fuzz.py --seconds $(FUZZ_SECONDS)
+
+soak: $(VENV)/.ready-dev
+	GW_FMU_SOAK=1 $(BIN)/python -m pytest tests/fmu/test_soak.py
 
 verify: $(VENV)/.ready
 	$(BIN)/gw-exudyn verify

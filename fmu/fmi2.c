@@ -22,10 +22,10 @@ static fmi2Status refuse(fmi2Component c, const char *function) {
 /* A message is a format to the host, and # begins a reference to a variable; both are to stand as they are. */
 static void log_message(const Instance *instance, Status status, const char *category, const char *message) {
     const fmi2CallbackFunctions *functions = instance->callback;
-    char plain[4096];
+    char plain[2 * LONGEST_MESSAGE];
     size_t at = 0;
     if (functions == NULL || functions->logger == NULL) return;
-    for (; *message != '\0' && at + 3 < sizeof plain; message++) {
+    for (; *message != '\0'; message++) {
         if (*message == '%' || *message == '#') plain[at++] = *message;
         plain[at++] = *message;
     }
@@ -112,7 +112,7 @@ fmi2Status fmi2Reset(fmi2Component c) {
     fmi2Status fmi2Get##TYPE(fmi2Component c, const fmi2ValueReference references[], size_t count,                   \
                              fmi2##TYPE values[]) {                                                                  \
         Instance *instance = c;                                                                                      \
-        if (c == NULL || (count > 0 && (references == NULL || values == NULL))) return fmi2Error;                    \
+        if (c == NULL || !given(instance, "fmi2Get" #TYPE, count, references, values)) return fmi2Error;             \
         if (!may(instance, "fmi2Get" #TYPE, PHASE_INSTANTIATED | READABLE)) return fmi2Error;                        \
         for (size_t i = 0; i < count; i++) {                                                                         \
             const Variable *variable = find(instance, "fmi2Get" #TYPE, references[i], KIND);                         \
@@ -125,7 +125,7 @@ fmi2Status fmi2Reset(fmi2Component c) {
     fmi2Status fmi2Set##TYPE(fmi2Component c, const fmi2ValueReference references[], size_t count,                   \
                              const fmi2##TYPE values[]) {                                                            \
         Instance *instance = c;                                                                                      \
-        if (c == NULL || (count > 0 && (references == NULL || values == NULL))) return fmi2Error;                    \
+        if (c == NULL || !given(instance, "fmi2Set" #TYPE, count, references, values)) return fmi2Error;             \
         if (!may(instance, "fmi2Set" #TYPE, PHASE_INSTANTIATED | PHASE_INITIALIZATION | PHASE_STEPPING))             \
             return fmi2Error;                                                                                        \
         for (size_t i = 0; i < count; i++) {                                                                         \
@@ -140,10 +140,10 @@ fmi2Status fmi2Reset(fmi2Component c) {
 #define NUMBER instance->numbers[variable->slot]
 
 ACCESS(Real, KIND_REAL, NUMBER, NUMBER = values[i])
-ACCESS(Integer, KIND_INTEGER, (fmi2Integer)NUMBER, NUMBER = values[i])
+ACCESS(Integer, KIND_INTEGER, whole_value(NUMBER), NUMBER = values[i])
 ACCESS(Boolean, KIND_BOOLEAN, NUMBER != 0 ? fmi2True : fmi2False, NUMBER = values[i] != fmi2False)
 ACCESS(String, KIND_TEXT, instance->texts[variable->slot],
-       if (values[i] == NULL || set_text(instance, variable, values[i]) != STATUS_OK) return fmi2Error)
+       if (set_text(instance, variable, values[i]) != STATUS_OK) return fmi2Error)
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real point, fmi2Real step, fmi2Boolean no_set_prior) {
     Step taken;
@@ -158,33 +158,40 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real point, fmi2Real step, fmi2Boolea
 
 fmi2Status fmi2CancelStep(fmi2Component c) { return refuse(c, "fmi2CancelStep"); }
 
+/* What is told of a step, and when. */
+static bool may_tell(fmi2Component c, const char *function, bool known) {
+    if (c == NULL || !may(INSTANCE(c), function, RUNNING | PHASE_TERMINATED)) return false;
+    if (!known)
+        tell(INSTANCE(c), STATUS_ERROR, "%s: nothing of this kind is known, or no place for it was given", function);
+    return known;
+}
+
 fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status *value) {
-    if (c == NULL || value == NULL || kind != fmi2DoStepStatus) return refuse(c, "fmi2GetStatus of this kind");
+    if (!may_tell(c, "fmi2GetStatus", kind == fmi2DoStepStatus && value != NULL)) return fmi2Error;
     *value = INSTANCE(c)->phase == PHASE_STOPPED ? fmi2Discard : fmi2OK;
     return fmi2OK;
 }
 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value) {
-    if (c == NULL || value == NULL || kind != fmi2LastSuccessfulTime)
-        return refuse(c, "fmi2GetRealStatus of this kind");
+    if (!may_tell(c, "fmi2GetRealStatus", kind == fmi2LastSuccessfulTime && value != NULL)) return fmi2Error;
     *value = INSTANCE(c)->time;
     return fmi2OK;
 }
 
 fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value) {
-    (void)kind;
-    (void)value;
-    return refuse(c, "fmi2GetIntegerStatus");
+    (void)kind, (void)value;
+    may_tell(c, "fmi2GetIntegerStatus", false);
+    return fmi2Error;
 }
 
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value) {
-    if (c == NULL || value == NULL || kind != fmi2Terminated) return refuse(c, "fmi2GetBooleanStatus of this kind");
+    if (!may_tell(c, "fmi2GetBooleanStatus", kind == fmi2Terminated && value != NULL)) return fmi2Error;
     *value = INSTANCE(c)->phase == PHASE_STOPPED ? fmi2True : fmi2False;
     return fmi2OK;
 }
 
 fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String *value) {
-    if (c == NULL || value == NULL || kind != fmi2PendingStatus) return refuse(c, "fmi2GetStringStatus of this kind");
+    if (!may_tell(c, "fmi2GetStringStatus", kind == fmi2PendingStatus && value != NULL)) return fmi2Error;
     *value = "";
     return fmi2OK;
 }

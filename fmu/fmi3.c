@@ -9,7 +9,8 @@
 
 #define INSTANCE(c) ((Instance *)(c))
 #define RUNNING (PHASE_STEPPING | PHASE_STOPPED)
-#define READABLE (PHASE_INSTANTIATED | PHASE_INITIALIZATION | RUNNING | PHASE_TERMINATED)
+/* After an error the standard has the state Terminated: what is there can be read. */
+#define READABLE (PHASE_INSTANTIATED | PHASE_INITIALIZATION | RUNNING | PHASE_TERMINATED | PHASE_ERROR)
 
 static fmi3Status as_fmi3(Status status) { return (fmi3Status)status; }
 
@@ -24,10 +25,18 @@ typedef struct {
     fmi3LogMessageCallback log;
 } Callback;
 
+/* In a message # begins a reference to a variable; it is to stand as it is. */
 static void log_message(const Instance *instance, Status status, const char *category, const char *message) {
     const Callback *callback = instance->callback;
-    if (callback != NULL && callback->log != NULL)
-        callback->log(instance->environment, as_fmi3(status), category, message);
+    char plain[2 * LONGEST_MESSAGE];
+    size_t at = 0;
+    if (callback == NULL || callback->log == NULL) return;
+    for (; *message != '\0'; message++) {
+        if (*message == '#') plain[at++] = *message;
+        plain[at++] = *message;
+    }
+    plain[at] = '\0';
+    callback->log(instance->environment, as_fmi3(status), category, plain);
 }
 
 const char *fmi3GetVersion(void) { return fmi3Version; }
@@ -114,7 +123,7 @@ fmi3Status fmi3Reset(fmi3Instance c) {
                              fmi3##TYPE values[], size_t n_values) {                                                 \
         Instance *instance = c;                                                                                      \
         size_t at = 0;                                                                                               \
-        if (c == NULL || (count > 0 && (references == NULL || values == NULL))) return fmi3Error;                    \
+        if (c == NULL || !given(instance, "fmi3Get" #TYPE, count, references, values)) return fmi3Error;             \
         if (!may(instance, "fmi3Get" #TYPE, READABLE)) return fmi3Error;                                             \
         for (size_t i = 0; i < count; i++) {                                                                         \
             const Variable *variable = find(instance, "fmi3Get" #TYPE, references[i], KIND);                         \
@@ -129,7 +138,7 @@ fmi3Status fmi3Reset(fmi3Instance c) {
                              const fmi3##TYPE values[], size_t n_values) {                                           \
         Instance *instance = c;                                                                                      \
         size_t at = 0;                                                                                               \
-        if (c == NULL || (count > 0 && (references == NULL || values == NULL))) return fmi3Error;                    \
+        if (c == NULL || !given(instance, "fmi3Set" #TYPE, count, references, values)) return fmi3Error;             \
         if (!may(instance, "fmi3Set" #TYPE, PHASE_INSTANTIATED | PHASE_INITIALIZATION | PHASE_STEPPING))             \
             return fmi3Error;                                                                                        \
         for (size_t i = 0; i < count; i++) {                                                                         \
@@ -149,10 +158,10 @@ static fmi3Status miscounted(Instance *instance, const char *function) {
 }
 
 ACCESS(Float64, KIND_REAL, NUMBER, NUMBER = values[at])
-ACCESS(Int32, KIND_INTEGER, (fmi3Int32)NUMBER, NUMBER = values[at])
+ACCESS(Int32, KIND_INTEGER, whole_value(NUMBER), NUMBER = values[at])
 ACCESS(Boolean, KIND_BOOLEAN, NUMBER != 0, NUMBER = values[at])
 ACCESS(String, KIND_TEXT, instance->texts[variable->slot + k],
-       if (values[at] == NULL || set_text(instance, variable, values[at]) != STATUS_OK) return fmi3Error)
+       if (set_text(instance, variable, values[at]) != STATUS_OK) return fmi3Error)
 
 fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 point, fmi3Float64 step, fmi3Boolean no_set_prior,
                       fmi3Boolean *event, fmi3Boolean *terminate, fmi3Boolean *early, fmi3Float64 *last) {
@@ -179,7 +188,7 @@ fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState *state) {
 }
 
 fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) {
-    if (c == NULL || !may(INSTANCE(c), "fmi3SetFMUState", READABLE | PHASE_ERROR)) return fmi3Error;
+    if (c == NULL || !may(INSTANCE(c), "fmi3SetFMUState", READABLE)) return fmi3Error;
     return as_fmi3(state_set(INSTANCE(c), "fmi3SetFMUState", state));
 }
 

@@ -13,13 +13,39 @@ static const double SAME_TIME = 1e-9;
 static const char *const CATEGORIES[] = {"logEvents", "logStatusWarning", "logStatusDiscard", "logStatusError",
                                          "logStatusFatal"};
 
+/* The length of the UTF-8 character that begins here; 0 if none does. */
+static size_t character(const unsigned char *text) {
+    static const struct { unsigned char mask, lead; uint32_t least; } FORMS[] = {
+        {0x80, 0x00, 0}, {0xe0, 0xc0, 0x80}, {0xf0, 0xe0, 0x800}, {0xf8, 0xf0, 0x10000}};
+    for (size_t length = 1; length <= 4; length++) {
+        uint32_t code = text[0] & (unsigned char)~FORMS[length - 1].mask;
+        if ((text[0] & FORMS[length - 1].mask) != FORMS[length - 1].lead) continue;
+        for (size_t i = 1; i < length; i++) {
+            if ((text[i] & 0xc0) != 0x80) return 0;
+            code = code << 6 | (text[i] & 0x3f);
+        }
+        return code >= FORMS[length - 1].least && code <= 0x10ffff && (code & 0xfffff800) != 0xd800 ? length : 0;
+    }
+    return 0;
+}
+
+/* Hosts take a message for UTF-8: what is not, as a character that was cut off, becomes a question mark. */
+static void make_utf8(char *text) {
+    while (*text != '\0') {
+        size_t length = character((const unsigned char *)text);
+        if (length == 0) *text = '?';
+        text += length == 0 ? 1 : length;
+    }
+}
+
 Status tell(Instance *instance, Status status, const char *format, ...) {
-    char message[4096];
+    char message[LONGEST_MESSAGE];
     va_list values;
     if (instance->logger == NULL || (status == STATUS_OK && !instance->log_events)) return status;
     va_start(values, format);
     vsnprintf(message, sizeof message, format, values);
     va_end(values);
+    make_utf8(message);
     instance->logger(instance, status, CATEGORIES[status], message);
     return status;
 }
@@ -153,6 +179,18 @@ void instance_free(Instance *instance) {
     free(instance);
 }
 
+int32_t whole_value(double value) {
+    if (isnan(value)) return 0;
+    if (value >= INT32_MAX) return INT32_MAX;
+    return value <= INT32_MIN ? INT32_MIN : (int32_t)value;
+}
+
+bool given(Instance *instance, const char *function, size_t count, const void *references, const void *values) {
+    if (count == 0 || (references != NULL && values != NULL)) return true;
+    tell(instance, STATUS_ERROR, "%s: the host gave no references or no values", function);
+    return false;
+}
+
 bool may(Instance *instance, const char *function, unsigned phases) {
     static const char *const NAMES[] = {"Instantiated", "Initialization Mode", "Step Mode", "Step Mode (run ended)",
                                         "Terminated", "Error", "Fatal"};
@@ -221,6 +259,8 @@ Status reset(Instance *instance) {
     }
     if (!restart_values(instance)) return noted(instance, tell(instance, STATUS_ERROR, "there is not enough memory"));
     set_time(instance, 0);
+    instance->start = instance->stop = 0;
+    instance->stop_defined = false;
     instance->phase = PHASE_INSTANTIATED;
     return STATUS_OK;
 }
@@ -295,7 +335,9 @@ Status before_get(Instance *instance, const char *function, const Variable *vari
 }
 
 Status set_text(Instance *instance, const Variable *variable, const char *text) {
-    char *made = copy(text);
+    char *made;
+    if (text == NULL) return tell(instance, STATUS_ERROR, "%s: the host gave no text", variable->name);
+    made = copy(text);
     if (made == NULL) return tell(instance, STATUS_ERROR, "there is not enough memory");
     free(instance->texts[variable->slot]);
     instance->texts[variable->slot] = made;

@@ -19,6 +19,9 @@ typedef enum {
     PHASE_ANY = 63
 } Phase;
 
+/* Of a message, with its end. */
+enum { LONGEST_MESSAGE = 4096 };
+
 typedef struct State State;
 typedef struct Instance Instance;
 typedef void (*Logger)(const Instance *instance, Status status, const char *category, const char *message);
@@ -52,6 +55,12 @@ Status tell(Instance *instance, Status status, const char *format, ...)
 #endif
     ;
 void set_logging(Instance *instance, bool on, size_t count, const char *const *categories);
+
+/* The nearest whole number that fits into 32 bits; 0 for what is no number. */
+int32_t whole_value(double value);
+
+/* Whether the host gave `count` references and values; tells if not. */
+bool given(Instance *instance, const char *function, size_t count, const void *references, const void *values);
 
 /* Whether `function` may be called in this phase; tells if not. */
 bool may(Instance *instance, const char *function, unsigned phases);

@@ -189,15 +189,16 @@ static char *own_program(const Table *table, const char *resources) {
 }
 
 static Worker *failed(Worker *worker, const Table *table, const char *program, int error, char *message, size_t size) {
+    const char *why = strerror(error);
     if (*table->program == '\0')
-        snprintf(message, size, "the Python interpreter '%s' can't be started (%s); %s", program, strerror(error),
+        snprintf(message, size, "the Python interpreter '%.1000s' can't be started (%s); %s", program, why,
                  table->remedy);
     else if (error == EACCES)
-        snprintf(message, size, "the worker '%s' may not be run there (%s): the folder forbids it (mount option noexec) "
-                 "or belongs to another user; have the host unpack the FMU elsewhere, as by the environment variable "
-                 "TMPDIR", program, strerror(error));
+        snprintf(message, size, "the worker '%.1000s' may not be run there (%s): the folder forbids it (mount option "
+                 "noexec) or belongs to another user; have the host unpack the FMU elsewhere, as by the environment "
+                 "variable TMPDIR", program, why);
     else
-        snprintf(message, size, "the worker '%s' can't be started (%s); %s", program, strerror(error), table->remedy);
+        snprintf(message, size, "the worker '%.1000s' can't be started (%s); %s", program, why, table->remedy);
     free(worker);
     return NULL;
 }

@@ -8,7 +8,7 @@ typedef struct {
     uint32_t kind, numbers, bytes, reserved;
 } Head;
 
-enum { MOST_NUMBERS = 2000000, MOST_BYTES = 1 << 30 };
+enum { MOST_BYTES = 1 << 30, MOST_AT_ONCE = 1 << 20 };
 
 static const double HELLO_TIMEOUT = 60;
 
@@ -50,12 +50,18 @@ static Status receive(Instance *instance, void *data, size_t size, double timeou
     return state == CHANNEL_OK ? STATUS_OK : lost(instance, state, timeout);
 }
 
+/* Room is made for what comes, not for what a head that may be wrong announces. */
 static Status receive_bytes(Instance *instance, size_t size, double timeout, Bytes *bytes) {
-    bytes->size = size;
-    bytes->data = malloc(size + 1);
-    if (bytes->data == NULL) return nonsense(instance);
-    bytes->data[size] = '\0';
-    return receive(instance, bytes->data, size, timeout);
+    do {
+        size_t piece = size - bytes->size < MOST_AT_ONCE ? size - bytes->size : MOST_AT_ONCE;
+        char *larger = realloc(bytes->data, bytes->size + piece + 1);
+        if (larger == NULL) return nonsense(instance);
+        bytes->data = larger;
+        if (receive(instance, bytes->data + bytes->size, piece, timeout) != STATUS_OK) return STATUS_FATAL;
+        bytes->size += piece;
+        bytes->data[bytes->size] = '\0';
+    } while (bytes->size < size);
+    return STATUS_OK;
 }
 
 Status request_hello(Instance *instance) {
@@ -153,29 +159,28 @@ static Status take_outputs(Instance *instance, const Head *head, double *time, B
                 timeout) != STATUS_OK ||
         receive_bytes(instance, head->bytes, timeout, bytes) != STATUS_OK)
         return STATUS_FATAL;
+    if (!isfinite(*time)) return nonsense(instance);
     return take_texts(instance, bytes) ? STATUS_OK : nonsense(instance);
 }
 
-static Status receive_reply(Instance *instance, Reply *reply, double *time, Bytes *bytes) {
+/* Whether this is an answer to that. */
+static bool answers(uint32_t reply, Request kind) {
+    if (reply == REPLY_REFUSED) return true;
+    if (kind == REQUEST_GET_STATE) return reply == REPLY_STATE;
+    return reply == REPLY_DONE || (kind == REQUEST_STEP && (reply == REPLY_STOPPED || reply == REPLY_FAILED));
+}
+
+static Status receive_reply(Instance *instance, Request kind, Reply *reply, double *time, Bytes *bytes) {
     double timeout = timeout_of(instance);
     Head head;
     do {
         if (receive(instance, &head, sizeof head, timeout) != STATUS_OK) return STATUS_FATAL;
     } while (head.kind == REPLY_ALIVE && head.numbers == 0 && head.bytes == 0);
-    if (head.numbers > MOST_NUMBERS || head.bytes > MOST_BYTES) return nonsense(instance);
+    if (head.bytes > MOST_BYTES || !answers(head.kind, kind)) return nonsense(instance);
     *reply = (Reply)head.kind;
-    switch (head.kind) {
-    case REPLY_DONE:
-    case REPLY_STOPPED:
-    case REPLY_FAILED:
-        return take_outputs(instance, &head, time, bytes);
-    case REPLY_REFUSED:
-    case REPLY_STATE:
-        if (head.numbers != 0) return nonsense(instance);
-        return receive_bytes(instance, head.bytes, timeout, bytes);
-    default:
-        return nonsense(instance);
-    }
+    if (head.kind != REPLY_REFUSED && head.kind != REPLY_STATE) return take_outputs(instance, &head, time, bytes);
+    if (head.numbers != 0) return nonsense(instance);
+    return receive_bytes(instance, head.bytes, timeout, bytes);
 }
 
 Status request(Instance *instance, Request kind, double extra, bool texts, const Bytes *bytes, Reply *reply,
@@ -184,7 +189,7 @@ Status request(Instance *instance, Request kind, double extra, bool texts, const
     Status status;
     if (instance->worker == NULL) return tell(instance, STATUS_FATAL, "the worker is gone; make a new instance");
     status = send_request(instance, kind, extra, texts, bytes);
-    if (status == STATUS_OK) status = receive_reply(instance, reply, time, &received);
+    if (status == STATUS_OK) status = receive_reply(instance, kind, reply, time, &received);
     if (status == STATUS_OK && *reply == REPLY_REFUSED)
         status = tell(instance, STATUS_ERROR, "%s", received.data);
     if (status == STATUS_OK && answer != NULL) *answer = received;

@@ -1,6 +1,7 @@
 /* Saved states: the values and the time of the wrapper, and the bytes of the worker. */
 #include "request.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -146,6 +147,7 @@ static bool whole(const Instance *instance, const char *data, size_t size, Recor
     for (size_t i = 0; i < record->texts; i++) ends += texts[i] == '\0';
     if (ends != table_texts(&instance->table)) return false;
     if (record->texts > 0 && texts[record->texts - 1] != '\0') return false;
+    if (!isfinite(record->time) || !isfinite(record->start) || isnan(record->stop)) return false;
     switch (record->phase) {
     case PHASE_INSTANTIATED: case PHASE_INITIALIZATION: case PHASE_ERROR: return record->blob == 0;
     case PHASE_STEPPING: case PHASE_STOPPED: case PHASE_TERMINATED: return true;

@@ -10,7 +10,7 @@
 enum { LARGEST_FILE = 4 * 1024 * 1024, MOST_VALUES = 1000000 };
 
 static bool complain(char *message, size_t size, const char *path, size_t line, const char *what) {
-    snprintf(message, size, "%s:%zu: %s; export the FMU again", path, line, what);
+    snprintf(message, size, "%.1000s:%zu: %s; export the FMU again", path, line, what);
     return false;
 }
 
@@ -76,6 +76,7 @@ static bool read_variable(Variable *variable, char *rest) {
     if (!whole_number(size, MOST_VALUES, &variable->size) || variable->size == 0) return false;
     if (!bits(start, &variable->start)) return false;
     if (variable->kind == KIND_TEXT && variable->size != 1) return false;
+    if (variable->role == ROLE_TIME && (variable->kind != KIND_REAL || variable->size != 1)) return false;
     variable->name = word(&rest);
     variable->text = rest;
     return *variable->name != '\0';
@@ -176,7 +177,7 @@ bool table_read(Table *table, const char *resources, char *message, size_t size)
     }
     table->content = whole_file(path, &length);
     if (table->content == NULL) {
-        snprintf(message, size, "%s can't be read; the host must give the folder of the FMU's resources, unpacked",
+        snprintf(message, size, "%.1000s can't be read; the host must give the folder of the FMU's resources, unpacked",
                  path);
         return false;
     }

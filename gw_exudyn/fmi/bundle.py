@@ -15,11 +15,12 @@ import subprocess
 import sys
 import sysconfig
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
 from gw_exudyn.errors import UsageError
+from gw_exudyn.fmi.legal import own_licence
 
 FOLDER = "worker"
 """The frozen worker's folder in the FMU's resources; its program bears the same name."""
@@ -29,16 +30,24 @@ LICENCES = "documentation/licenses/bundled.txt"
 _SYSTEM = ("libGL", "libGLX", "libGLdispatch", "libX11", "libxcb", "libXau", "libXdmcp", "libbsd", "libmd")
 """What Exudyn links of the graphics system, and what that links."""
 
-# Not needed by a worker. readline is left out for its licence as well (GPL).
+# Not needed by a worker: each costs time to look through, room, and some of it time at the start. readline is left out
+# for its licence as well (GPL). One import in a place that a worker may come to after all is told as what is missing.
 _LEFT_OUT = (
-    "IPython", "PIL", "_hashlib", "_ssl", "ast_serialize", "curses", "dask", "distributed", "exudyn.exudynCPPfast",
-    "fmpy", "gymnasium", "h5netcdf", "h5py", "hypothesis", "lxml", "matplotlib", "mujoco", "mypy", "pandas", "pip",
-    "psutil", "pydantic.mypy", "pydantic.v1", "pytest", "readline", "rich", "scipy", "setuptools", "sqlite3", "ssl",
-    "tkinter", "xarray", "ziglang",
+    "IPython", "PIL", "_hashlib", "_ssl", "ast_serialize", "asyncio", "bdb", "cmd", "concurrent", "curses", "dask",
+    "distributed", "doctest", "exudyn.FEM", "exudyn.exudynCPPfast", "exudyn.misc.GUI", "exudyn.physics",
+    "exudyn.utilities", "fmpy", "ftplib", "getpass", "gw_exudyn.comparison",
+    "gw_exudyn.metrics", "gw_exudyn.plots", "gw_exudyn.storage", "gymnasium", "h5netcdf", "h5py", "http", "hypothesis",
+    "lxml", "matplotlib", "mpl_toolkits", "mujoco", "multiprocessing", "mypy", "netrc", "numpy.f2py", "numpy.testing",
+    "pandas", "pdb", "pip", "psutil", "py_compile", "pydantic.experimental", "pydantic.mypy", "pydantic.v1",
+    "pydoc", "pydoc_data", "pytest", "readline", "rich", "runpy", "scipy", "setuptools", "socketserver", "sqlite3",
+    "ssl", "tarfile", "tkinter", "unittest", "urllib.request", "webbrowser", "xarray", "xml.sax", "xmlrpc", "ziglang",
 )  # fmt: skip
-_PARTS = ("gw_exudyn.fmi.worker", "gw_exudyn.fmi.plant", "exudyn.exudynCPP", "shapely")
-_SHOWN = ("gw-exudyn", "exudyn", "numpy", "pydantic", "pydantic_core", "shapely", "PyYAML", "typing_extensions",
+# pkgutil is asked for by the package svg in a way that is not seen.
+_PARTS = ("gw_exudyn.fmi.worker", "gw_exudyn.fmi.plant", "exudyn.exudynCPP", "pkgutil", "shapely")
+_SHOWN = ("exudyn", "numpy", "pydantic", "pydantic_core", "shapely", "PyYAML", "typing_extensions",
           "annotated-types", "typing-inspection", "pyinstaller")  # fmt: skip
+# Its graph of modules is never freed; looking for what could be only takes time.
+_FREEZE = "import gc; gc.disable(); from PyInstaller.__main__ import run; run()"
 _ENTRY = "import sys\nfrom gw_exudyn.fmi.worker import main\nmain(sys.argv[1:])\n"
 
 
@@ -60,7 +69,7 @@ def frozen() -> dict[str, bytes]:
     with tempfile.TemporaryDirectory(prefix="gw-bundle-") as scratch:
         entry = Path(scratch, f"{FOLDER}.py")
         entry.write_text(_ENTRY, encoding="utf-8")
-        command = [sys.executable, "-m", "PyInstaller", *_options(Path(scratch)), str(entry)]
+        command = [sys.executable, "-c", _FREEZE, *_options(Path(scratch)), str(entry)]
         environment = {**os.environ, "PYINSTALLER_CONFIG_DIR": f"{scratch}/config", "PYTHONHASHSEED": "0"}
         run = subprocess.run(command, cwd=scratch, env=environment, capture_output=True, text=True)
         if run.returncode != 0:
@@ -77,6 +86,8 @@ def _options(scratch: Path) -> Iterator[str]:
 
     package = Path(__file__).resolve().parents[1]
     kernel = LIBRARY_FOLDER / library_name(platform.system(), platform.machine())
+    # Modules as files of their own: they load faster than from an archive in the program.
+    yield from ("--debug", "noarchive")
     yield from ("--onedir", "--name", FOLDER, "--noconfirm", "--log-level", "ERROR", "--paths", str(package.parent))
     yield from ("--distpath", str(scratch / "dist"), "--workpath", str(scratch / "work"), "--specpath", str(scratch))
     yield from ("--collect-binaries", "exudyn")
@@ -115,9 +126,7 @@ def glibc_need(files: Mapping[str, bytes]) -> str:
 def licences(files: Mapping[str, bytes]) -> str:
     """The licences of what is frozen: of the Python packages, of Python, and of the system's libraries."""
     parts = [f"What runs this FMU, in resources/{FOLDER}, is made of the following, each under its own licence.\n"]
-    own = Path(__file__).resolve().parents[2] / "LICENSE"  # a source tree; installed, it is among the package's files
-    if own.is_file():
-        parts.append(_heading("gw-exudyn") + own.read_text(encoding="utf-8"))
+    parts.append(_heading("gw-exudyn") + own_licence())
     parts.append(_heading(f"Python {platform.python_version()}") + _python_licence())
     for name in _SHOWN:
         try:
@@ -135,10 +144,7 @@ def licences(files: Mapping[str, bytes]) -> str:
             + ("\n".join(texts) or f"{next(filter(None, kind), 'see its home page')}\n")
         )
     names = sorted(Path(file).name for file in files if re.fullmatch(rf"{FOLDER}/_internal/[^/]+\.so[.\d]*", file))
-    packages: dict[str, list[str]] = {}
-    for name in names:
-        packages.setdefault(_package_of(name), []).append(name)
-    for package, held in sorted(packages.items()):
+    for package, held in sorted(_packages_of(names).items()):
         text = Path("/usr/share/doc", package, "copyright")
         known = text.read_text(encoding="utf-8", errors="replace") if package and text.is_file() else ""
         parts.append(_heading(", ".join(held)) + (known or "from the system on which this FMU was exported\n"))
@@ -154,9 +160,15 @@ def _python_licence() -> str:
     return text.read_text(encoding="utf-8") if text.is_file() else "Python Software Foundation License, version 2\n"
 
 
-def _package_of(library: str) -> str:
-    """The package of the system that a library is of; empty where that is not known."""
-    if shutil.which("dpkg") is None:
-        return ""
-    told = subprocess.run(["dpkg", "-S", f"*/{library}"], capture_output=True, text=True, check=False).stdout
-    return told.partition(":")[0] if told else ""
+def _packages_of(libraries: Sequence[str]) -> dict[str, list[str]]:
+    """The libraries by the package of the system that they are of; empty where that is not known."""
+    told = ""
+    if shutil.which("dpkg") is not None:
+        patterns = [f"*/{library}" for library in libraries]
+        told = subprocess.run(["dpkg", "-S", *patterns], capture_output=True, text=True, check=False).stdout
+    # A line says `package:architecture: /path/library`.
+    package_of = {Path(line.rpartition(" ")[2]).name: line.partition(":")[0] for line in reversed(told.splitlines())}
+    packages: dict[str, list[str]] = {}
+    for library in libraries:
+        packages.setdefault(package_of.get(library, ""), []).append(library)
+    return packages

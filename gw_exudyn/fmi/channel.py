@@ -168,7 +168,7 @@ def end_with_the_host() -> None:
 
 def pack_texts(texts: Sequence[str]) -> bytes:
     """Texts, each after its length."""
-    return b"".join(struct.pack("=I", len(text)) + text for text in (t.encode() for t in texts))
+    return b"".join(struct.pack("=I", len(text)) + text for text in (t.encode("utf-8", "replace") for t in texts))
 
 
 def unpack_texts(data: bytes) -> list[str]:

@@ -167,6 +167,16 @@ def build_description(model: Model) -> bytes:
     return _checked(root, 3, "BuildDescription")
 
 
+def terminals_and_icons() -> bytes:
+    """terminalsAndIcons/terminalsAndIcons.xml of FMI 3: the icon fills the block, 20 mm wide on a sheet."""
+    root = _element("fmiTerminalsAndIcons", fmiVersion="3.0")
+    shown = _element("GraphicalRepresentation", root)
+    corners = {"x1": -100.0, "y1": -100.0, "x2": 100.0, "y2": 100.0}
+    _element("CoordinateSystem", shown, **corners, suggestedScalingFactorTo_mm=0.1)
+    _element("Icon", shown, **corners)
+    return _checked(root, 3, "TerminalsAndIcons")
+
+
 def _element(tag: str, parent: _Element | None = None, **attributes: Any) -> _Element:
     from lxml import etree
 

@@ -17,9 +17,11 @@ from typing import TYPE_CHECKING
 
 import gw_exudyn
 from gw_exudyn.errors import StorageError, UsageError
-from gw_exudyn.fmi import bundle, description
+from gw_exudyn.fmi import bundle, description, icon
 from gw_exudyn.fmi.bundle import FOLDER
-from gw_exudyn.fmi.page import documentation
+from gw_exudyn.fmi.legal import licence
+from gw_exudyn.fmi.page import documentation, external_dependencies
+from gw_exudyn.fmi.related import related_files
 from gw_exudyn.fmi.resources import HASHES, SCENARIO, TABLE, Launch, table_text
 from gw_exudyn.fmi.table import table
 from gw_exudyn.fmi.variables import Variable
@@ -88,7 +90,8 @@ def export(
                 entry = zipfile.ZipInfo(name, _DATE)
                 entry.compress_type = zipfile.ZIP_DEFLATED
                 entry.external_attr = (0o755 if name.startswith(("binaries/", f"resources/{FOLDER}/")) else 0o644) << 16
-                archive.writestr(entry, content)
+                # What is frozen is large: a level less takes little more room and half the time.
+                archive.writestr(entry, content, compresslevel=5 if name.startswith(f"resources/{FOLDER}/") else None)
         os.replace(part, target)
     except OSError as error:
         with contextlib.suppress(OSError):
@@ -135,10 +138,17 @@ def _files(scenario: Scenario, fmi: int, stations: int, launch: Launch, bundled:
     )
     if fmi == 3:
         files["sources/buildDescription.xml"] = description.build_description(model)
+        files["terminalsAndIcons/terminalsAndIcons.xml"] = description.terminals_and_icons()
+        files |= {"terminalsAndIcons/icon.png": icon.png(), "terminalsAndIcons/icon.svg": icon.svg()}
+    else:
+        files["model.png"] = icon.png()
+    files |= related_files(scenario, variables)
     model = replace(model, token=_token(files, repr((fmi, variables, launch))))
     files[f"resources/{TABLE}"] = table_text(variables, model.token, launch).encode()
     files["modelDescription.xml"] = description.model_description(model, variables, fmi)
-    files["documentation/index.html"] = documentation(model.name, variables, fmi, launch).encode()
+    files["documentation/index.html"] = documentation(model, variables, fmi, launch).encode()
+    files["documentation/externalDependencies.txt"] = external_dependencies(launch).encode()
+    files["documentation/licenses/license.txt"] = licence(bundled).encode()
     return files
 
 

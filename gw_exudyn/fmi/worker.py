@@ -5,6 +5,7 @@ It greets the wrapper before it loads the heavy packages, so that they load whil
 
 from __future__ import annotations
 
+import contextlib
 import gc
 import struct
 import sys
@@ -45,8 +46,14 @@ class Plant(Protocol):
 
 
 def serve(channel: Channel, make: Callable[[], Plant]) -> None:
-    """Answer requests until the host is gone. What goes wrong is answered with a sentence."""
+    """Answer requests until the host is gone. What goes wrong is answered with a sentence.
+
+    The plant is made before the first request, in the time that the host takes for its own preparations. Where it can't
+    be, the first request tries again, and is told why.
+    """
     plant: Plant | None = None
+    with contextlib.suppress(Exception):
+        plant = make()
     while True:
         request = channel.receive()
         try:
@@ -72,7 +79,7 @@ def serve(channel: Channel, make: Callable[[], Plant]) -> None:
 
 
 def _refuse(channel: Channel, sentence: str) -> None:
-    channel.reply(words.REFUSED, rest=sentence.encode())
+    channel.reply(words.REFUSED, rest=sentence.encode("utf-8", "replace"))
 
 
 def _answer(channel: Channel, plant: Plant, request: Request) -> None:
@@ -122,8 +129,10 @@ def main(arguments: Sequence[str]) -> None:
     def load() -> Plant:
         # Next to nothing that is loaded here is ever freed, so looking for what could be only takes time.
         gc.disable()
+        from gw_exudyn.engine.library import exudyn
         from gw_exudyn.fmi.plant import ScenarioPlant
 
+        exudyn()
         gc.freeze()
         gc.enable()
         return ScenarioPlant(resources)

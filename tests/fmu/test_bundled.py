@@ -12,12 +12,14 @@ from pathlib import Path
 
 import pytest
 from fmpy.validation import validate_fmu
-from hosts import Host
+from hosts import OK, WARNING, Host
+from standin import sanitizers
 from test_hosts import BARE, NAMES, STEP, STEPS, build
 
 from gw_exudyn.errors import UsageError
 from gw_exudyn.fmi import bundle
 from gw_exudyn.fmi.export import export
+from gw_exudyn.scenario import list_shipped
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="FMUs are bundled on Linux alone")
 
@@ -32,6 +34,8 @@ def bundled(scenario, tmp_path_factory) -> Path:
 def test_it_runs_in_a_root_with_nothing_but_the_c_library(bundled, fmus, tmp_path):
     from gw_exudyn.fmi.wrapper.build import fmi_headers
 
+    if sanitizers():
+        pytest.skip("`make sanitize`: the sanitizers' libraries are not in the box")
     if shutil.which("bwrap") is None:
         pytest.skip("bubblewrap is not installed")
     with Host(fmus[3]).start() as host:
@@ -71,6 +75,30 @@ def test_what_it_holds(bundled):
     assert not [name for name in names if "readline" in name]
     for part in ("exudyn", "numpy", "shapely", "Python 3", "libstdc++"):
         assert f"\n{part}" in text
+
+
+DRAWN = """
+name: drawn
+wire: {model: universal-ii, segments: 20}
+vessel: {kind: polygon, file: lumen.svg, length: 120 mm}
+catheter: {exit: [1 mm, 2 mm], direction: 0 deg, bore: 1.2 mm}
+contact: {friction_coefficient: 0.4}
+drive: {kind: speed, speed: 2 mm/s, distance: 10 mm}
+"""
+
+
+def test_every_shipped_scenario_runs_in_it_and_one_with_a_drawing(bundled, tmp_path):
+    """What is left out of it is needed by none."""
+    (tmp_path / "drawn.yaml").write_text(DRAWN)
+    path = '<path d="M 0 80 L 32 80 V 20 h -4 v 56 H 0 Z"/>'
+    (tmp_path / "lumen.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 120 80">{path}</svg>')
+    with Host(bundled).instantiate() as host:
+        for name in (*list_shipped(), str(tmp_path / "drawn.yaml")):
+            host.start({"scenarioFile": name})
+            end = host.step(0.05)
+            assert end["status"] in (OK, WARNING), (name, host.messages)
+            assert host.get("solver.steps") > 0
+            host.calls.reset()
 
 
 def test_a_system_that_is_too_old_is_told_what_it_needs(bundled):

@@ -245,6 +245,19 @@ def test_no_worker_is_left_after_the_instances_are_freed(fmu):
 
 
 @linux
+def test_the_worker_loads_while_the_host_prepares(fmus):
+    """Without any request."""
+    with Host(fmus[2]).instantiate() as host:
+        maps = Path(f"/proc/{host.worker()}/maps")
+        until = time.monotonic() + 30
+        while "exudynCPP" not in maps.read_text() and time.monotonic() < until:
+            time.sleep(0.02)
+        assert "exudynCPP" in maps.read_text()
+        host.start()
+        assert host.step(0.05)["status"] == OK
+
+
+@linux
 def test_ctrl_c_in_the_terminal_is_the_hosts_alone(fmus):
     with Host(fmus[2]).start() as host:
         assert os.getpgid(host.worker()) != os.getpgid(0)

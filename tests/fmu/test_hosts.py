@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import subprocess
 import sys
 from importlib.util import find_spec
@@ -11,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from hosts import Host
+from standin import compile_c, sanitizers
 
 STEP, STEPS = 0.05, 38
 NAMES = ("tip.x", "tip.y", "push.force", "wall.force.max")
@@ -85,22 +85,8 @@ int main(int argc, char **argv) {
 
 
 def build(source: str, folder: Path, *options: str) -> Path:
-    compiler = shutil.which("cc") or shutil.which("gcc")
-    if compiler is None:
-        pytest.skip("there is no C compiler")
     (folder / "host.c").write_text(source)
-    command = [
-        compiler,
-        "-std=gnu99",
-        "-Wall",
-        "-Wextra",
-        "-Werror",
-        str(folder / "host.c"),
-        "-o",
-        str(folder / "host"),
-    ]
-    subprocess.run([*command, *options], check=True)
-    return folder / "host"
+    return compile_c(folder / "host.c", folder / "host", "-Werror", *sanitizers(), *options)
 
 
 def test_a_c_program_with_libcosim_gives_the_same_numbers(fmus, expected, tmp_path):

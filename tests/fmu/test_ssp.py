@@ -11,6 +11,7 @@ from hosts import Host
 from lxml import etree
 
 from gw_exudyn.cli.main import main
+from gw_exudyn.fmi.related import FOLDER, PARAMETERS
 
 STEP, STEPS = 0.05, 38
 SETTINGS = ["wire.segments=20", "drive.speed=20 mm/s", "drive.distance=70 mm"]
@@ -38,6 +39,9 @@ def test_they_are_what_the_standard_wants(files):
     with zipfile.ZipFile(system) as archive:
         assert archive.read("resources/a.ssv") == values.read_bytes()
         assert archive.read("resources/a.fmu") == fmu.read_bytes()
+    with zipfile.ZipFile(fmu) as archive:  # the one inside is the same
+        assert archive.read(f"{FOLDER}/{PARAMETERS}") == values.read_bytes()
+    with zipfile.ZipFile(system) as archive:
         schema("Description").assertValid(etree.fromstring(archive.read("SystemStructure.ssd")))
     with Host(fmu) as host:
         wanted = {name for name, variable in host.variables.items() if variable.causality == "parameter"}
