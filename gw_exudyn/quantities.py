@@ -319,6 +319,11 @@ def number_text(name: str, value: float | None, unit: str) -> str:
     return display(like, value) if like else f"{value:.4g} {unit}"
 
 
+def value_text(value: object) -> str:
+    """Any value as tables show it: six digits of a number, a dash where there is none."""
+    return "-" if value is None else f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
 def plain(unit: str) -> str:
     """The unit as people write it: the micro sign instead of the `u` that files use, the degree sign for angles."""
     if unit == "deg":

@@ -146,22 +146,19 @@ def _put_json(
 
 
 def _put_tables(norms: Mapping[str, Norm], changed: list[Difference] | None, files: list[Path]) -> None:
-    from gw_exudyn.quantities import number_text
+    from gw_exudyn.quantities import number_text, value_text
 
     put_table([(name, number_text(name, norm.value, norm.unit), norm.meaning) for name, norm in norms.items()], [1])
     put("")
     if changed is None:
         put("B is measured: pairs are taken at equal time from the start, places as they are in the file")
     elif changed:
-        put_table([("differs", "A", "B"), *((one.path, _text(one.first), _text(one.second)) for one in changed)])
+        rows = ((one.path, value_text(one.first), value_text(one.second)) for one in changed)
+        put_table([("differs", "A", "B"), *rows])
     else:
         put("the scenarios are the same")
     for file in files:
         put(str(short(file)))
-
-
-def _text(value: object) -> str:
-    return "-" if value is None else f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
 def _beyond(name: str, norm: Norm, limit: float) -> str:

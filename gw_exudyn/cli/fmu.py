@@ -45,6 +45,7 @@ def export(
 ) -> None:
     """Load, check and write."""
     from gw_exudyn.fmi import export as exporting
+    from gw_exudyn.fmi.table import variables_of
     from gw_exudyn.scenario import load_scenario
 
     loaded = load_scenario(scenario, overrides)
@@ -55,7 +56,7 @@ def export(
     if ssp:
         from gw_exudyn.fmi.ssp import write_ssp
 
-        for further in write_ssp(loaded, written, exporting.variables_of(loaded, int(fmi), stations)):
+        for further in write_ssp(loaded, written, variables_of(loaded, int(fmi), stations)):
             put(str(further))
     if bundled:
         from gw_exudyn.fmi.bundle import this_platform

@@ -23,16 +23,12 @@ from gw_exudyn.fmi.legal import licence
 from gw_exudyn.fmi.page import documentation, external_dependencies
 from gw_exudyn.fmi.related import related_files
 from gw_exudyn.fmi.resources import HASHES, SCENARIO, TABLE, Launch, table_text
-from gw_exudyn.fmi.table import table
-from gw_exudyn.fmi.variables import Variable
+from gw_exudyn.fmi.table import DEFAULT_STATIONS, variables_of
 from gw_exudyn.fmi.wrapper import HEADERS, PLATFORMS, SOURCES, library, source_folder
-from gw_exudyn.quantities import SCALARS
 
 if TYPE_CHECKING:
     from gw_exudyn.scenario import Scenario
 
-STATIONS = 51
-"""Points along the wire at which FMI 3 shows its shape and forces, unless told otherwise."""
 
 _DATE = (1980, 1, 1, 0, 0, 0)
 _FOLDERS2 = {"x86_64-linux": "linux64", "aarch64-linux": "aarch64-linux", "x86_64-windows": "win64"}
@@ -53,19 +49,12 @@ def identifier_of(name: str) -> str:
     return text if re.match(r"[A-Za-z_]", text) else f"_{text}"
 
 
-def variables_of(scenario: Scenario, fmi: int, stations: int = STATIONS) -> list[Variable]:
-    """The variables of a scenario's FMU. Raises ScenarioError for one that cannot start."""
-    from gw_exudyn.model import build
-
-    return table(build(scenario), SCALARS, stations if fmi == 3 else 0)
-
-
 def export(
     scenario: Scenario,
     file: str | os.PathLike[str],
     fmi: int = 2,
     *,
-    stations: int = STATIONS,
+    stations: int = DEFAULT_STATIONS,
     launch: Launch | None = None,
     bundled: bool = False,
 ) -> Path:

@@ -143,7 +143,7 @@ def _where(launch: Launch) -> str:
 def readme_parts() -> tuple[str, ...]:
     """What stands in fmu/README.md from here: method, limits, how a run ends, and, at its end, the variables of the
     scenario `arc90` in FMI 3."""
-    from gw_exudyn.fmi.export import variables_of
+    from gw_exudyn.fmi.table import variables_of
     from gw_exudyn.scenario import load_scenario
 
     return (

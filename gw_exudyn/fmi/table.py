@@ -26,11 +26,22 @@ from gw_exudyn.fmi.variables import (
     peak_names,
     status_code,
 )
-from gw_exudyn.quantities import QUANTITIES
+from gw_exudyn.quantities import QUANTITIES, SCALARS
 from gw_exudyn.result import Status
 
 if TYPE_CHECKING:
     from gw_exudyn.model import Model
+    from gw_exudyn.scenario import Scenario
+
+DEFAULT_STATIONS = 51
+"""Points along the wire at which FMI 3 shows its shape and forces, unless told otherwise."""
+
+
+def variables_of(scenario: Scenario, fmi: int, stations: int = DEFAULT_STATIONS) -> list[Variable]:
+    """The variables of a scenario's FMU. Raises ScenarioError for one that cannot start."""
+    from gw_exudyn.model import build
+
+    return table(build(scenario), SCALARS, stations if fmi == 3 else 0)
 
 
 def table(model: Model, scalars: tuple[str, ...], stations: int = 0) -> list[Variable]:

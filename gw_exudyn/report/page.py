@@ -12,7 +12,7 @@ from gw_exudyn.comparison import differences
 from gw_exudyn.errors import UsageError
 from gw_exudyn.metrics import Metric, metrics
 from gw_exudyn.plots.save import render_figures
-from gw_exudyn.quantities import number_text
+from gw_exudyn.quantities import number_text, value_text
 from gw_exudyn.report.pack import packed_run, scalars_table
 from gw_exudyn.report.parts import filled, picture, save_page, table
 
@@ -81,7 +81,9 @@ def _scenarios(results: Sequence[Result], names: Sequence[str]) -> str:
         for change in differences(plain[0], other):
             row = others.setdefault(change.path, [change.first] * len(plain))
             row[number + 1] = change.second
-    changed = table(["differs", *names], [[path, *map(_plain, row)] for path, row in others.items()]) if others else ""
+    changed = (
+        table(["differs", *names], [[path, *map(value_text, row)] for path, row in others.items()]) if others else ""
+    )
     inputs = "".join(
         f"<details><summary>inputs of {html.escape(name)}</summary>"
         f"<pre>{html.escape(json.dumps(one, indent=1, ensure_ascii=False))}</pre></details>"
@@ -103,7 +105,3 @@ def _provenance(results: Sequence[Result], names: Sequence[str]) -> str:
         command = str(result.provenance.get("command", ""))
         rows.append([name, command or "-", ", ".join(f"{key} {value}" for key, value in versions.items())])
     return table(["run", "command", "versions"], rows)
-
-
-def _plain(value: Any) -> str:
-    return "-" if value is None else f"{value:.6g}" if isinstance(value, float) else str(value)

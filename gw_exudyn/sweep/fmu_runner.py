@@ -108,7 +108,7 @@ def _interval(scenario: Scenario) -> float:
 
 def _parameters(scenario: Scenario) -> dict[str, Any]:
     """Values of a scenario that an FMU of it has as parameters, by name."""
-    from gw_exudyn.fmi.export import variables_of
+    from gw_exudyn.fmi.table import variables_of
 
     return {v.name: v.start for v in variables_of(scenario, 2) if v.role == names.FIXED and v.source not in ("", "-")}
 

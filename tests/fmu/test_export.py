@@ -10,7 +10,8 @@ from fmpy import read_model_description
 from fmpy.validation import validate_fmu
 
 from gw_exudyn.errors import ScenarioError, StorageError, UsageError
-from gw_exudyn.fmi.export import export, identifier_of, variables_of
+from gw_exudyn.fmi.export import export, identifier_of
+from gw_exudyn.fmi.table import variables_of
 from gw_exudyn.fmi.units import fmi_name
 from gw_exudyn.fmi.variables import output_name
 from gw_exudyn.quantities import QUANTITIES, SCALARS
