@@ -112,8 +112,9 @@ def _descent(work: Objective, start: Floats) -> Descent:
     from scipy.optimize import least_squares
 
     work.best = None
-    if not np.isfinite(work.residuals(start)).all():
-        return Descent(start, None, False, work.steps[-1].reason)
+    failure = work.failure(start)
+    if failure:
+        return Descent(start, None, False, failure)
     try:
         found = least_squares(
             work.residuals,

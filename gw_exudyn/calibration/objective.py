@@ -50,15 +50,27 @@ class Best:
 class Derivatives:
     """What was found beside a point.
 
-    jacobian : (k, p) residuals by relative parameters. bends : (k, p) mean of the residuals on both sides of the point
-    less those at it: how far a simulation is from the straight line that its derivative stands for; 0 where a side
-    lacks. sides : per parameter the courses below and above, and how far these are apart, relative.
+    jacobian : (k, p) residuals by relative parameters. bends : (k, p) residuals on the straight line between both
+    sides, at the point, less those at it: how far a simulation is from the line that its derivative stands for; 0
+    where a side lacks. sides : per parameter the courses below and above, and how far these are apart, relative.
     """
 
     point: Floats
     jacobian: Floats
     bends: Floats
     sides: list[tuple[Course, Course, float]]
+
+
+@dataclass(frozen=True, eq=False)
+class _Sides:
+    """Simulations below and above a point along a parameter. apart : how far, relative. share : where between them the
+    point lies, 0 below, 1 above; at a bound, and beside a failure, it is one of the two.
+    """
+
+    below: Simulated
+    above: Simulated
+    apart: float
+    share: float
 
 
 class StuckError(Exception):
@@ -107,6 +119,11 @@ class Objective:
         """(k,) Residuals at a point; NaN where its simulation failed, which makes scipy refuse the step."""
         return self.tried([point])[0]
 
+    def failure(self, point: Floats) -> str:
+        """Why a point gives no residuals; empty where it does. It does not count as tried."""
+        (one,) = self._simulate(self._calibration, [point])
+        return "" if np.isfinite(self._of(one)).all() else one.reason
+
     def tried(self, points: Sequence[Floats]) -> list[Floats]:
         """The residuals at several points, simulated in parallel; each counts as a step."""
         found = []
@@ -131,7 +148,7 @@ class Objective:
     def _derive(self, point: Floats) -> Derivatives:
         """By central differences; one-sided at a bound and beside a failure."""
         count = len(point)
-        sides: list[tuple[Simulated, Simulated, float] | None] = [None] * count
+        sides: list[_Sides | None] = [None] * count
         step = STEP
         for _ in range(HALVINGS + 1):
             for i, side in self._beside(point, [i for i in range(count) if sides[i] is None], step):
@@ -141,20 +158,17 @@ class Objective:
         if lacking:
             raise StuckError(f"no simulation beside the best point works out for {', '.join(lacking)}")
         known = [side for side in sides if side is not None]
-        columns = [(self._of(high) - self._of(low)) / apart for low, high, apart in known]
-        courses = [(low.course, high.course, apart) for low, high, apart in known]
+        columns = [(self._of(one.above) - self._of(one.below)) / one.apart for one in known]
+        courses = [(one.below.course, one.above.course, one.apart) for one in known]
         pairs = [(low, high, apart) for low, high, apart in courses if low is not None and high is not None]
         (here,) = self._simulate(self._calibration, [point])
         bends = [
-            (self._of(high) + self._of(low)) / 2 - self._of(here) if here not in (low, high) else np.zeros(self.count)
-            for low, high, _ in known
+            (1 - one.share) * self._of(one.below) + one.share * self._of(one.above) - self._of(here) for one in known
         ]
         self._derivatives = Derivatives(point.copy(), np.column_stack(columns), np.column_stack(bends), pairs)
         return self._derivatives
 
-    def _beside(
-        self, point: Floats, wanted: list[int], step: float
-    ) -> list[tuple[int, tuple[Simulated, Simulated, float]]]:
+    def _beside(self, point: Floats, wanted: list[int], step: float) -> list[tuple[int, _Sides]]:
         """The simulations on both sides of a point, for those of the wanted parameters where they work out."""
         ends = [(max(point[i] - step, 0.0), min(point[i] + step, 1.0)) for i in wanted]
         moved = [_moved(point, i, end) for i, pair in zip(wanted, ends, strict=True) for end in pair]
@@ -169,7 +183,7 @@ class Objective:
             if not self._good(above):
                 above, high = here, float(point[i])
             if high > low:
-                found.append((i, (below, above, high - low)))
+                found.append((i, _Sides(below, above, high - low, (float(point[i]) - low) / (high - low))))
         return found
 
     def _good(self, one: Simulated) -> bool:

@@ -14,7 +14,18 @@ from gw_exudyn.result import software_versions
 _DECIDE = ("python", "gw-exudyn", "exudyn", "numpy")
 """Packages whose version may change a number of a run; the others only write it down."""
 
-_PARTS = ("scenario", "model", "engine", "simulation.py", "sampling.py", "trust.py", "result.py", "metrics.py")
+PARTS = (
+    "scenario",
+    "model",
+    "engine",
+    "simulation.py",
+    "sampling.py",
+    "trust.py",
+    "events.py",
+    "quantities.py",
+    "result.py",
+    "metrics",
+)
 """Parts of this package that decide on the numbers of a run; the version alone does not tell one state of a source
 tree from the next."""
 
@@ -62,7 +73,9 @@ def _code_digest() -> str:
 
 
 def _files(package: Path) -> Iterator[Path]:
-    for part in _PARTS:
+    for part in PARTS:
         path = package / part
         found = [path] if path.is_file() else sorted(path.rglob("*"))
+        if not found:
+            raise FileNotFoundError(f"{path}: part of what decides on a run's numbers, and not there")
         yield from (file for file in found if file.suffix in (".py", ".c", ".yaml"))

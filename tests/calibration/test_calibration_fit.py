@@ -82,6 +82,7 @@ def test_it_finds_the_truth_within_intervals_that_are_those_of_the_closed_form()
     given = calibration(both)
     found = report(given, Made(both))
     assert found.fit.converged
+    assert [np.allclose(step.point, found.fit.steps[0].point) for step in found.fit.steps].count(True) == 1
     assert not any(one.doubts for one in found.estimates)
     assert found.notes == ()
     assert found.statistics.reduced == pytest.approx(1.0, abs=0.4)
@@ -121,6 +122,19 @@ def test_simulations_that_jump_widen_the_intervals():
     assert rough.estimates[1].roughness > 0.5 * rough.estimates[1].standard_error
     assert rough.estimates[1].half_width > 1.2 * smooth.estimates[1].half_width
     assert any(note.startswith("simulations jump") for note in rough.notes)
+
+
+@pytest.mark.parametrize("from_the_end", [0.0, 0.004, 0.1])
+def test_a_straight_model_is_not_rough_at_a_bound_either(from_the_end):
+    def straight(friction: float, stiffness: float) -> np.ndarray:
+        return stiffness * 0.01 * TIME + 0.1 * friction * np.sin(TIME)
+
+    given = calibration(straight)
+    high = given.parameters[1].low + (TRUTH[1] - given.parameters[1].low) / (1 - from_the_end)
+    Path("fit.yaml").write_text(Path("fit.yaml").read_text().replace("high: 2}", f"high: {high:.9f}}}"))
+    found = report(load_calibration("fit.yaml"), Made(straight))
+    assert found.estimates[1].roughness < 1e-3 * found.estimates[1].standard_error
+    assert not any(note.startswith("simulations jump") for note in found.notes)
 
 
 def test_points_that_fit_as_well_beyond_linear_theory_widen_the_intervals():

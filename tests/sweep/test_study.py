@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
 from gw_exudyn.errors import ScenarioError, UsageError
-from gw_exudyn.sweep.identity import Maker, this_maker
+from gw_exudyn.sweep.identity import PARTS, Maker, this_maker
 from gw_exudyn.sweep.plan import Options, make_plan
 from gw_exudyn.sweep.studies.loading import load_study
 
@@ -247,3 +251,29 @@ def test_metrics_of_a_target_and_of_branches_are_those_of_the_base(tmp_path):
     )
     with pytest.raises(ScenarioError, match=r"plain.yaml:3: metrics.0: 'target_reached' is no metric of a run"):
         load_study(tmp_path / "plain.yaml")
+
+
+def test_all_that_a_run_imports_counts_for_its_id():
+    done = subprocess.run(
+        [sys.executable, "-c", _IMPORTED],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+    )
+    counted = {part.removesuffix(".py") for part in PARTS}
+    # What hands a point on, writes it down or words a mistake; a change there changes no number.
+    others = {"__init__", "errors", "native", "sweep", "storage", "plots"}
+    imported = set(done.stdout.split())
+    assert {"engine", "metrics", "events"} <= imported
+    assert imported <= counted | others
+
+
+_IMPORTED = """
+import sys
+from gw_exudyn.scenario import load_scenario
+from gw_exudyn.sweep.runner import SIMULATION, Task, make_runner
+scenario = load_scenario("straight", ["wire.segments=5", "drive.distance=1 mm"]).to_dict()
+assert make_runner(SIMULATION).run(Task("id", scenario)).trusted
+print(*{name.split(".")[1] for name in sys.modules if name.startswith("gw_exudyn.")})
+"""
