@@ -1,4 +1,4 @@
-"""A page of sections with texts, figures that lie beside it, and tables that sort and filter."""
+"""A page of sections with texts, figures and tables that sort and filter; all of it in one file."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ import html
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
 from gw_exudyn.report.columns import Column, text_column
 from gw_exudyn.report.packing import base64_text
-from gw_exudyn.report.parts import filled
+from gw_exudyn.report.parts import filled, picture
 
 SCRIPTS = ("base.js", "grid.js", "document.js")
 _SHORT = 60
@@ -44,14 +45,14 @@ class Section:
     """A section of a page.
 
     name : its anchor. title : its head. texts : pairs of a heading (or nothing) and a text, in which `**bold**`,
-    `` `code` `` and `[words](link)` are understood, and an empty line begins a paragraph. pictures : PNG files beside
-    the page, with what they show; a PDF of the same name is linked.
+    `` `code` `` and `[words](link)` are understood, and an empty line begins a paragraph. pictures : PNG files with
+    what they show; they are put into the page, and a PDF of the same name beside it is linked.
     """
 
     name: str
     title: str
     texts: Sequence[tuple[str, str]] = ()
-    pictures: Mapping[str, str] = field(default_factory=dict)
+    pictures: Mapping[Path, str] = field(default_factory=dict)
     sheets: Sequence[Sheet] = ()
 
 
@@ -87,11 +88,9 @@ def _text(head: str, text: str) -> str:
     return f"<div>{f'<h3>{html.escape(head)}</h3>' if head else ''}{paragraphs}</div>"
 
 
-def _picture(file: str, words: str) -> str:
-    pdf = f"{file.removesuffix('.png')}.pdf"
-    image = f'<img src="{file}" alt="{html.escape(words)}" loading="lazy">'
-    caption = f'<figcaption>{html.escape(words)} (<a href="{pdf}">PDF</a>)</figcaption>'
-    return f'<figure><a href="{pdf}">{image}</a>{caption}</figure>'
+def _picture(file: Path, words: str) -> str:
+    caption = f'{html.escape(words)} (<a href="{file.with_suffix(".pdf").name}">PDF</a>)'
+    return picture(file.read_bytes(), words, caption)
 
 
 def _sheet(sheet: Sheet, number: int) -> str:

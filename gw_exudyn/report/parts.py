@@ -52,10 +52,11 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return f'<div class="wide"><table><thead><tr>{cells(head, "th")}</tr></thead><tbody>{body}</tbody></table></div>'
 
 
-def picture(content: bytes, words: str) -> str:
-    """A PNG inside the page. words : what it shows, for those who do not see it."""
+def picture(content: bytes, words: str, caption: str = "") -> str:
+    """A PNG inside the page. words : what it shows, for those who do not see it. caption : HTML below it."""
     source = f"data:image/png;base64,{base64.b64encode(content).decode('ascii')}"
-    return f'<figure><img alt="{html.escape(words)}" loading="lazy" src="{source}"></figure>'
+    below = f"<figcaption>{caption}</figcaption>" if caption else ""
+    return f'<figure><img alt="{html.escape(words)}" loading="lazy" src="{source}">{below}</figure>'
 
 
 def save_page(page: str, path: str | Path) -> Path:

@@ -122,7 +122,7 @@ def _section(part: Part, told: list[tuple[str, str]], out: Path) -> Section:
     texts = dict(told)
     place = texts.pop("paper", "")
     sheets = [_sheet(title, name, out) for name, title in part.tables.items()]
-    pictures = {f"{name}.png": shown for name, shown in part.pictures.items()}
+    pictures = {out / f"{name}.png": shown for name, shown in part.pictures.items()}
     title = f"{part.title} ({place})" if place else part.title
     return Section(part.script, title, list(texts.items()), pictures, sheets)
 

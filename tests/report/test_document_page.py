@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import matplotlib.image
+import numpy as np
 import pytest
 
 from gw_exudyn.report import Section, Sheet, document_page, save_page
@@ -21,7 +23,10 @@ LONG = [{"time [s]": f"{row}", "push [mN]": f"{row % 7}"} for row in range(400)]
 @pytest.fixture
 def page(opened, tmp_path):
     sheets = [Sheet("Short", ROWS, "short.csv", frozenset({2})), Sheet("Long", LONG), Sheet("Words", ROWS, wrap=True)]
-    sections = [Section("one", "One <b>", [("head", "some **bold** `code`")], sheets=sheets), Section("two", "Two")]
+    drawn = tmp_path / "drawn.png"
+    matplotlib.image.imsave(drawn, np.zeros((20, 30)))
+    text = [("head", "some **bold** `code`")]
+    sections = [Section("one", "One <b>", text, {drawn: "a picture"}, sheets), Section("two", "Two")]
     return opened(save_page(document_page("A & B", ["See [it](short.csv)."], sections), tmp_path / "index.html"))
 
 
@@ -50,6 +55,15 @@ def test_contents_lead_to_sections_and_names_cannot_break_the_page(page):
     assert links.all_inner_texts() == ["One <b>", "Two"]
     assert [page.locator(href).count() for href in ("#one", "#two")] == [1, 1]
     assert page.locator("#one b").inner_text() == "bold"
+
+
+def test_pictures_are_in_the_page_itself(page, tmp_path):
+    (tmp_path / "drawn.png").unlink()
+    page.reload()
+    image = page.get_by_alt_text("a picture")
+    image.scroll_into_view_if_needed()
+    page.wait_for_function("() => document.querySelector('figure img').naturalWidth === 30")
+    assert page.locator("figcaption a").get_attribute("href") == "drawn.pdf"
 
 
 def test_words_are_marked_up_and_made_safe():
