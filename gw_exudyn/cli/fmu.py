@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import click
@@ -45,17 +46,18 @@ def export(
 ) -> None:
     """Load, check and write."""
     from gw_exudyn.fmi import export as exporting
+    from gw_exudyn.fmi.ssp import files_beside, write_ssp
     from gw_exudyn.fmi.table import variables_of
     from gw_exudyn.scenario import load_scenario
 
     loaded = load_scenario(scenario, overrides)
     file = out or f"{loaded.name}.fmu"
+    if ssp:
+        files_beside(Path(file))  # before anything is written
     launch = exporting.launch_of(python)
     written = exporting.export(loaded, file, int(fmi), stations=stations, launch=launch, bundled=bundled)
     put(str(written))
     if ssp:
-        from gw_exudyn.fmi.ssp import write_ssp
-
         for further in write_ssp(loaded, written, variables_of(loaded, int(fmi), stations)):
             put(str(further))
     if bundled:
