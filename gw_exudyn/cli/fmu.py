@@ -88,8 +88,8 @@ def run(
     from gw_exudyn.fmi.session import FmuSession
 
     chosen = dict(_pair(text) for text in values)
-    table = read_inputs(inputs) if inputs else None
     with FmuSession(file) as session:
+        table = read_inputs(inputs, session.units) if inputs else None
         done = session.run(chosen, inputs=table, stop=stop, step=step)
         final: dict[str, Any] = {n: value.item() for n, value in done.final.items() if value.ndim == 0}
         if out is not None:

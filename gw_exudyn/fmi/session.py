@@ -122,6 +122,11 @@ class FmuSession:
         """The folder of the FMU's resources."""
         return self._folder / "resources"
 
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of every variable by its name, as FMI writes it; empty for none."""
+        return {name: str(variable.unit or "") for name, variable in self.variables.items()}
+
     def run(
         self,
         values: Mapping[str, Any] | None = None,

@@ -14,6 +14,8 @@ from gw_exudyn.fmi.session import FmuSession
 from gw_exudyn.scenario import load_scenario
 from gw_exudyn.simulation import Simulation
 
+UNITS = {"command.speed": "m/s", "command.active": ""}
+
 
 def test_export_run_and_check(tmp_path, capsys):
     file = str(tmp_path / "a.fmu")
@@ -85,14 +87,44 @@ def test_one_instance_serves_many_points_and_an_error_does_not_end_it(fmu, scena
         ("time,command.speed\n0,1,2\n", "2 numbers are needed"),
         ("time,command.speed\n1,1\n0,1\n", "must not fall"),
         ("time,command.speed [mm/q]\n1,1\n", "unknown unit"),
+        ("time,command.speed [deg]\n1,1\n", ":1: command.speed [deg]: is an angle, not a speed; units that fit: m/s"),
+        ("time [mm],command.speed\n1,1\n", ":1: time [mm]: is a length, not a time"),
+        ("time,command.speed [mm/s\n1,1\n", ":1: command.speed [mm/s: is no heading"),
+        ("time,command.speed []\n1,1\n", "is no unit"),
+        ("time,command.active [s]\n1,1\n", "has no unit in the FMU"),
+        ("time,command.speed,command.speed [mm/s]\n0,1,1\n", ":1: command.speed: there are two columns"),
+        ("time [mm],command.speed [N]\n1,1\n", ":1: command.speed [N]: is a force"),
         ("time\n", "has no rows"),
     ],
 )
 def test_inputs_that_make_no_sense(tmp_path, text, sentence):
     (tmp_path / "in.csv").write_text(text)
     with pytest.raises(StorageError, match=r"in\.csv") as error:
-        read_inputs(tmp_path / "in.csv")
+        read_inputs(tmp_path / "in.csv", UNITS)
     assert sentence in str(error.value)
+
+
+def test_all_headings_that_make_no_sense_are_told_at_once(tmp_path):
+    (tmp_path / "in.csv").write_text("time [mm],command.speed [deg]\n0,1\n")
+    with pytest.raises(StorageError) as error:
+        read_inputs(tmp_path / "in.csv", UNITS)
+    assert len(str(error.value).splitlines()) == 2
+
+
+@pytest.mark.parametrize(
+    ("unit", "heading", "value"),
+    [
+        ("m/s", " [mm/s]", 0.002),
+        ("m/s", "", 2.0),
+        ("mm/s", " [m/s]", 2000.0),
+        ("N.mm2", "[N*m^2]", 2e6),
+        ("degC", " [degC]", 2.0),
+    ],
+)
+def test_inputs_come_in_the_unit_of_their_variable(tmp_path, unit, heading, value):
+    (tmp_path / "in.csv").write_text(f"time [ms],x{heading}\n1000,2\n")
+    table = read_inputs(tmp_path / "in.csv", {"x": unit})
+    assert table.tolist() == [(1.0, pytest.approx(value))]
 
 
 def test_an_input_that_the_fmu_does_not_have(fmus):
