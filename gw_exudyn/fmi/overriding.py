@@ -22,8 +22,23 @@ def overridden(base: Scenario, changed: Mapping[str, Any]) -> Scenario:
     """A scenario with other values of an FMU's parameters, by their names. Raises ScenarioError."""
     plain = {path_of(name): value for name, value in changed.items() if not name.endswith(".factor")}
     factors = {name: value for name, value in changed.items() if name.endswith(".factor")}
-    scenario = scenario_from_dict(opened(base, plain), plain)
+    wrong = _out_of_range(factors)
+    try:
+        scenario = scenario_from_dict(opened(base, plain), plain)
+    except ScenarioError as error:
+        raise ScenarioError([*error.problems, *wrong]) from error
+    if wrong:
+        raise ScenarioError(wrong)
     return _scaled(scenario, factors) if factors else scenario
+
+
+def _out_of_range(factors: Mapping[str, Any]) -> list[Problem]:
+    low, high = names.STIFFNESS_FACTOR_LIMITS
+    return [
+        Problem(name, f"{value:g} is out of range; allowed: {low:g} to {high:g}")
+        for name, value in factors.items()
+        if not low <= value <= high
+    ]
 
 
 def opened(base: Scenario, paths: Collection[str]) -> dict[str, Any]:

@@ -22,6 +22,7 @@ from gw_exudyn.fmi.variables import (
     REAL,
     SCENARIO_FILE,
     STIFFNESS_FACTOR,
+    STIFFNESS_FACTOR_LIMITS,
     TEXT,
     TIMEOUT,
     TUNABLE,
@@ -96,10 +97,10 @@ def _parameters(model: Model) -> Iterator[Variable]:
     known = {**model.describe(), "catheter.friction_coefficient": scenario.contact.friction_coefficient}
     yield Variable("wire.model", TEXT, FIXED, "wire of the catalogue, by name", scenario.wire.model or "", source="-")
     factor = "factor on the wire's bending stiffness"
-    yield Variable(STIFFNESS_FACTOR, REAL, FIXED, factor, 1.0, "1", "1", 1e-3, 1e3)
+    yield Variable(STIFFNESS_FACTOR, REAL, FIXED, factor, 1.0, "1", "1", *STIFFNESS_FACTOR_LIMITS)
     for i in range(len(scenario.wire.bending_stiffness)):
         name = f"wire.bending_stiffness[{i}].factor"
-        yield Variable(name, REAL, FIXED, f"{factor}, of piece {i} from the tip", 1.0, "1", "1", 1e-3, 1e3)
+        yield Variable(name, REAL, FIXED, f"{factor}, of piece {i} from the tip", 1.0, "1", "1", *STIFFNESS_FACTOR_LIMITS)
     for part in _SECTIONS:
         section = getattr(scenario, part)
         if section is not None:

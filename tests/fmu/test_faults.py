@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import subprocess
@@ -14,6 +15,9 @@ from pathlib import Path
 import pytest
 from fmpy.fmi1 import FMICallException
 from hosts import DISCARD, ERROR, FATAL, OK, WARNING, Host, alive, children
+
+from gw_exudyn.errors import ScenarioError
+from gw_exudyn.fmi.overriding import overridden
 
 linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
 
@@ -62,6 +66,18 @@ def test_a_parameter_out_of_range_is_told_with_what_is_allowed(fmu):
         host.calls.reset()
         host.start()
         assert host.step(0.05)["status"] == OK
+
+
+@pytest.mark.parametrize(
+    "name", ["wire.bending_stiffness.factor", "wire.bending_stiffness[1].factor"], ids=["whole wire", "piece"]
+)
+@pytest.mark.parametrize("factor", [0.0, -1.0, 5000.0, math.nan])
+def test_a_stiffness_factor_out_of_range_is_told_beside_all_else(scenario, name, factor):
+    for others in ({}, {"contact.friction_coefficient": 9.0}):
+        with pytest.raises(ScenarioError) as error:
+            overridden(scenario, {name: factor, **others})
+        assert f"{name}: {factor:g} is out of range; allowed: 0.001 to 1000" in str(error.value)
+        assert [problem.path for problem in error.value.problems] == [*others, name]
 
 
 def test_a_speed_that_is_no_number_is_an_error(fmus):
