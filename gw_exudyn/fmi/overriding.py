@@ -7,12 +7,14 @@ out. `opened` takes out what would stand against a value that is to be changed.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from typing import Any
 
 from gw_exudyn.errors import Problem, ScenarioError, UsageError
 from gw_exudyn.fmi import variables as names
 from gw_exudyn.fmi.parameters import command_of, constant_drive, path_of
 from gw_exudyn.scenario import Scenario, scenario_from_dict
+from gw_exudyn.scenario.overrides import OVERRIDE
 
 _OF_THE_WIRE = ("diameter", "length", "density", "bending_stiffness")
 """What a wire of the catalogue fills in, where a file does not give it."""
@@ -25,11 +27,19 @@ def overridden(base: Scenario, changed: Mapping[str, Any]) -> Scenario:
     wrong = _out_of_range(factors)
     try:
         scenario = scenario_from_dict(opened(base, plain), plain)
+        scenario = _scaled(scenario, factors) if factors and not wrong else scenario
     except ScenarioError as error:
-        raise ScenarioError([*error.problems, *wrong]) from error
+        named = {path_of(name): name for name in changed}
+        raise ScenarioError([*(_by_name(problem, named) for problem in error.problems), *wrong]) from error
     if wrong:
         raise ScenarioError(wrong)
-    return _scaled(scenario, factors) if factors else scenario
+    return scenario
+
+
+def _by_name(problem: Problem, named: Mapping[str, str]) -> Problem:
+    """As the host knows it: by the parameter's name, not by its path and as an override."""
+    place = None if (problem.file or "").startswith(OVERRIDE) else problem.file
+    return replace(problem, path=named.get(problem.path, problem.path), file=place)
 
 
 def _out_of_range(factors: Mapping[str, Any]) -> list[Problem]:

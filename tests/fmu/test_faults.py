@@ -80,6 +80,15 @@ def test_a_stiffness_factor_out_of_range_is_told_beside_all_else(scenario, name,
         assert [problem.path for problem in error.value.problems] == [*others, name]
 
 
+def test_a_mistake_is_told_once_by_the_parameters_name(scenario):
+    with pytest.raises(ScenarioError) as error:
+        overridden(scenario, {"contact.friction_coefficient": 3.0, "tip.dead_force[0]": 1000.0})
+    told = sorted(str(error.value).splitlines())
+    assert told[0].startswith("contact.friction_coefficient: 3.0 is out of range")
+    assert told[1].startswith("tip.dead_force[0]: ")
+    assert "override" not in str(error.value)
+
+
 def test_a_speed_that_is_no_number_is_an_error(fmus):
     with Host(fmus[2]).start() as host:
         for value in (float("nan"), float("inf")):
