@@ -45,7 +45,10 @@ def test_export_run_and_check(tmp_path, capsys):
     [
         (["--set", "contact.frictionn=1"], 2, "nearest: contact.friction"),
         (["--set", "contact.friction_coefficient"], 2, "write name=value"),
-        (["--set", "contact.friction_coefficient=much"], 2, "write a number in 1"),
+        (["--set", "contact.friction_coefficient=much"], 2, "is no Real; write a number\n"),
+        (["--set", "wire.length=much"], 2, "is no Real; write a number in m\n"),
+        (["--set", "wire.segments=30.0"], 2, "'30.0' is no Integer; write a whole number\n"),
+        (["--set", "command.active=yes"], 2, "'yes' is no Boolean; write true or false\n"),
         (["--set", "contact.friction_coefficient=7"], 4, "allowed: 0 to 2"),
         (["--input", "nowhere.csv"], 7, "nowhere.csv: can't be read"),
     ],
