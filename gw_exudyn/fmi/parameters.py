@@ -97,10 +97,11 @@ def _parameters(model: Model) -> Iterator[Variable]:
     known = {**model.describe(), "catheter.friction_coefficient": scenario.contact.friction_coefficient}
     yield Variable("wire.model", TEXT, FIXED, "wire of the catalogue, by name", scenario.wire.model or "", source="-")
     factor = "factor on the wire's bending stiffness"
-    yield Variable(STIFFNESS_FACTOR, REAL, FIXED, factor, 1.0, "1", "1", *STIFFNESS_FACTOR_LIMITS)
+    rest = (1.0, "1", "1", *STIFFNESS_FACTOR_LIMITS)
+    yield Variable(STIFFNESS_FACTOR, REAL, FIXED, factor, *rest)
     for i in range(len(scenario.wire.bending_stiffness)):
         name = f"wire.bending_stiffness[{i}].factor"
-        yield Variable(name, REAL, FIXED, f"{factor}, of piece {i} from the tip", 1.0, "1", "1", *STIFFNESS_FACTOR_LIMITS)
+        yield Variable(name, REAL, FIXED, f"{factor}, of piece {i} from the tip", *rest)
     for part in _SECTIONS:
         section = getattr(scenario, part)
         if section is not None:
