@@ -40,6 +40,15 @@ def test_export_run_and_check(tmp_path, capsys):
     assert "FAILED" not in text
 
 
+def test_stations_that_fmi_2_cannot_show_are_refused(tmp_path, capsys):
+    file = str(tmp_path / "a.fmu")
+    assert main(["fmu", "export", "arc90", "--stations", "9", "--out", file]) == 2
+    assert "--stations: FMI 2.0 has no arrays" in capsys.readouterr().err
+    assert main(["fmu", "export", "arc90", "--stations", "9", "--fmi", "3", "--out", file]) == 0
+    with FmuSession(file) as session:
+        assert session.variables["wire.station.x"].dimensions[0].start == 9
+
+
 @pytest.mark.parametrize(
     ("arguments", "code", "sentence"),
     [
