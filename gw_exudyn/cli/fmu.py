@@ -75,7 +75,9 @@ def export(
 @click.option("--input", "inputs", metavar="FILE.csv", help="Inputs against time: header time,command.speed [mm/s].")
 @click.option("--stop", type=float, help="Stop time, s. Without: the FMU's own.")
 @click.option("--step", type=float, help="Communication step, s. Without: the FMU's own.")
-@click.option("--out", metavar="DIR", help="Folder for outputs.csv and run.json.")
+@click.option(
+    "--out", metavar="DIR", help="Folder for outputs.csv, stations.csv (FMI 3.0: the wire's shape) and run.json."
+)
 @options.as_json
 def run(
     file: str,

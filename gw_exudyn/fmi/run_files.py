@@ -6,7 +6,8 @@ import csv
 import json
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -97,19 +98,41 @@ def _spelled(unit: str) -> str:
     return re.sub(r"(?<=[A-Za-z])(-?\d)", r"^\1", unit).replace(".", "*")
 
 
+STATIONS = "stations.csv"
+
+
 def write_run(run: FmuRun, session: FmuSession, values: Mapping[str, Any], folder: str | os.PathLike[str]) -> Path:
-    """Write outputs.csv (scalars, header with SI units) and run.json into a folder. Raises StorageError."""
+    """Write outputs.csv (scalars, header with SI units), stations.csv where there are arrays, and run.json into a
+    folder. Raises StorageError.
+
+    A row of stations.csv is a station at an instant: its time, its number, 0 at the tip, and the values there.
+    """
     target = Path(folder)
     names = [name for name in run.names if run.outputs[name].ndim == 1]
-    units = {"time": "s", **{n: getattr(session.variables.get(n), "unit", None) or "1" for n in names if n != "time"}}
+    arrays = [name for name in run.names if run.outputs[name].ndim == 2]
+    heads = {name: f"{name} [{'s' if name == 'time' else session.units.get(name) or '1'}]" for name in run.names}
     try:
         target.mkdir(parents=True, exist_ok=True)
         with (target / "outputs.csv").open("w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file, lineterminator="\n")
-            writer.writerow([f"{name} [{units[name]}]" for name in names])
+            writer.writerow([heads[name] for name in names])
             writer.writerows([[repr(row[name].item()) for name in names] for row in run.outputs])
+        if arrays:
+            with (target / STATIONS).open("w", newline="", encoding="utf-8") as file:
+                writer = csv.writer(file, lineterminator="\n")
+                writer.writerow([heads["time"], "station", *(heads[name] for name in arrays)])
+                writer.writerows(_station_rows(run.outputs, arrays))
         content = {"status": run.code, "message": run.message, "values": dict(values)}
         (target / "run.json").write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
     except OSError as error:
         raise StorageError(f"{target}: can't be written: {error.strerror or error}") from error
     return target
+
+
+def _station_rows(outputs: NDArray[Any], arrays: Sequence[str]) -> Iterator[list[str | int]]:
+    for row in outputs:
+        time = repr(row["time"].item())
+        # Of an FMU of others, arrays may differ in length: what is not there stays empty.
+        columns = (map(repr, row[name].tolist()) for name in arrays)
+        for station, values in enumerate(zip_longest(*columns, fillvalue="")):
+            yield [time, station, *values]

@@ -31,6 +31,15 @@ def test_export_run_and_check(tmp_path, capsys):
     assert len(lines) == 7
     assert [float(x) for x in lines[-1].split(",")[:2]] == pytest.approx([0.5, 0.01])
     assert json.loads((out / "run.json").read_text())["status"] == 0
+    stations = np.genfromtxt(out / "stations.csv", delimiter=",", skip_header=1)
+    assert (out / "stations.csv").read_text().splitlines()[0] == (
+        "time [s],station,wire.station.arc_length [m],wire.station.x [m],wire.station.y [m],"
+        "wire.station.normal_force [N]"
+    )
+    assert stations.shape == (6 * 51, 6)
+    tip = stations[stations[:, 1] == 0]
+    wanted = np.genfromtxt(out / "outputs.csv", delimiter=",", skip_header=1)
+    np.testing.assert_allclose(tip[:, [0, 3, 4]], wanted[:, [0, 2, 3]], atol=1e-12)
     capsys.readouterr()
     assert main(["fmu", "run", file, "--stop", "0.1", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["final"]["insertion.depth"] == pytest.approx(0.0002)
