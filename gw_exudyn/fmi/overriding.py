@@ -24,7 +24,9 @@ def overridden(base: Scenario, changed: Mapping[str, Any]) -> Scenario:
     """A scenario with other values of an FMU's parameters, by their names. Raises ScenarioError."""
     plain = {path_of(name): value for name, value in changed.items() if not name.endswith(".factor")}
     factors = {name: value for name, value in changed.items() if name.endswith(".factor")}
-    wrong = _out_of_range(factors)
+    wrong = [*_not_of_the_drive(base, changed), *_out_of_range(factors)]
+    for problem in wrong:
+        plain.pop(problem.path, None)
     try:
         scenario = scenario_from_dict(opened(base, plain), plain)
         scenario = _scaled(scenario, factors) if factors and not wrong else scenario
@@ -40,6 +42,28 @@ def _by_name(problem: Problem, named: Mapping[str, str]) -> Problem:
     """As the host knows it: by the parameter's name, not by its path and as an override."""
     place = None if (problem.file or "").startswith(OVERRIDE) else problem.file
     return replace(problem, path=named.get(problem.path, problem.path), file=place)
+
+
+OWN_FMU = "leave it at its start, or export the scenario that is to run as an FMU of its own"
+"""What to do where a host has named another scenario, which lacks what the exported one has."""
+
+
+def _not_of_the_drive(scenario: Scenario, changed: Mapping[str, Any]) -> list[Problem]:
+    """Parameters that the exported scenario's drive has and this one's has not."""
+    drive, command = scenario.drive, command_of(scenario)
+    of_one_value = {command, "distance"} if drive.kind == "speed" else {command}
+    wrong = []
+    for name in changed:
+        part, _, field = name.partition(".")
+        if part != "drive":
+            continue
+        if field in of_one_value:
+            if constant_drive(scenario) is None:
+                text = f"the drive has no one {command}, but a table of it in time; {OWN_FMU}"
+                wrong.append(Problem(name, text))
+        elif field in ("speed", "force", "distance") or not hasattr(drive, field):
+            wrong.append(Problem(name, f"a drive of kind {drive.kind} has none; {OWN_FMU}"))
+    return wrong
 
 
 def _out_of_range(factors: Mapping[str, Any]) -> list[Problem]:
