@@ -139,7 +139,8 @@ fmi2Status fmi2Reset(fmi2Component c) {
 
 #define NUMBER instance->numbers[variable->slot]
 
-ACCESS(Real, KIND_REAL, NUMBER, NUMBER = values[i])
+ACCESS(Real, KIND_REAL, NUMBER,
+       if (set_real(instance, variable, &NUMBER, values[i]) != STATUS_OK) return fmi2Error)
 ACCESS(Integer, KIND_INTEGER, whole_value(NUMBER), NUMBER = values[i])
 ACCESS(Boolean, KIND_BOOLEAN, NUMBER != 0 ? fmi2True : fmi2False, NUMBER = values[i] != fmi2False)
 ACCESS(String, KIND_TEXT, instance->texts[variable->slot],

@@ -157,7 +157,8 @@ static fmi3Status miscounted(Instance *instance, const char *function) {
     return as_fmi3(tell(instance, STATUS_ERROR, "%s: the number of values is not that of the variables", function));
 }
 
-ACCESS(Float64, KIND_REAL, NUMBER, NUMBER = values[at])
+ACCESS(Float64, KIND_REAL, NUMBER,
+       if (set_real(instance, variable, &NUMBER, values[at]) != STATUS_OK) return fmi3Error)
 ACCESS(Int32, KIND_INTEGER, whole_value(NUMBER), NUMBER = values[at])
 ACCESS(Boolean, KIND_BOOLEAN, NUMBER != 0, NUMBER = values[at])
 ACCESS(String, KIND_TEXT, instance->texts[variable->slot + k],

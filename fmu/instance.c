@@ -10,8 +10,10 @@
 /* Times closer than this, s, are one. */
 static const double SAME_TIME = 1e-9;
 
+/* By status, STATUS_OK first. */
 static const char *const CATEGORIES[] = {"logEvents", "logStatusWarning", "logStatusDiscard", "logStatusError",
                                          "logStatusFatal"};
+enum { ALL_CATEGORIES = (1 << (STATUS_FATAL + 1)) - 1 };
 
 /* The length of the UTF-8 character that begins here; 0 if none does. */
 static size_t character(const unsigned char *text) {
@@ -41,7 +43,7 @@ static void make_utf8(char *text) {
 Status tell(Instance *instance, Status status, const char *format, ...) {
     char message[LONGEST_MESSAGE];
     va_list values;
-    if (instance->logger == NULL || (status == STATUS_OK && !instance->log_events)) return status;
+    if (instance->logger == NULL || !(instance->categories & 1u << status)) return status;
     va_start(values, format);
     vsnprintf(message, sizeof message, format, values);
     va_end(values);
@@ -51,10 +53,15 @@ Status tell(Instance *instance, Status status, const char *format, ...) {
 }
 
 void set_logging(Instance *instance, bool on, size_t count, const char *const *categories) {
-    instance->log_events = on && count == 0;
-    for (size_t i = 0; on && categories != NULL && i < count; i++)
-        if (categories[i] != NULL && (strcmp(categories[i], "logEvents") == 0 || strcmp(categories[i], "logAll") == 0))
-            instance->log_events = true;
+    instance->categories = on ? ALL_CATEGORIES : ALL_CATEGORIES & ~(1u << STATUS_OK);
+    if (!on || count == 0 || categories == NULL) return;
+    instance->categories = 0;
+    for (size_t i = 0; i < count; i++) {
+        if (categories[i] == NULL) continue;
+        if (strcmp(categories[i], "logAll") == 0) instance->categories = ALL_CATEGORIES;
+        for (unsigned status = STATUS_OK; status <= STATUS_FATAL; status++)
+            if (strcmp(categories[i], CATEGORIES[status]) == 0) instance->categories |= 1u << status;
+    }
 }
 
 static char *copy(const char *text) {
@@ -149,7 +156,7 @@ Instance *instance_new(const char *name, const char *token, const char *resource
     instance->logger = logger;
     instance->callback = callback;
     instance->environment = environment;
-    instance->log_events = logging;
+    set_logging(instance, logging, 0, NULL);
     instance->phase = PHASE_INSTANTIATED;
     instance->name = copy(name == NULL ? "" : name);
     instance->resources = resources == NULL ? NULL : folder_of(resources);
@@ -341,5 +348,14 @@ Status set_text(Instance *instance, const Variable *variable, const char *text) 
     if (made == NULL) return tell(instance, STATUS_ERROR, "there is not enough memory");
     free(instance->texts[variable->slot]);
     instance->texts[variable->slot] = made;
+    return STATUS_OK;
+}
+
+Status set_real(Instance *instance, const Variable *variable, double *place, double value) {
+    const Table *table = &instance->table;
+    if (table->timeout < table->n_variables && variable == &table->variables[table->timeout] && !(value >= 0))
+        return noted(instance, tell(instance, STATUS_ERROR, "%s: %.17g s is no time to wait; allowed: 0, which waits for "
+                                    "ever, and more", variable->name, value));
+    *place = value;
     return STATUS_OK;
 }

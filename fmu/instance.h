@@ -40,7 +40,7 @@ struct Instance {
     double start, stop, time;
     Logger logger;
     void *callback, *environment; /* the host's */
-    bool log_events;
+    unsigned categories; /* of the messages that the host gets: bit 1 << status */
 };
 
 /* NULL if the FMU can't be used; the reason goes to the logger. */
@@ -54,6 +54,8 @@ Status tell(Instance *instance, Status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)))
 #endif
     ;
+/* Debug logging on: every message or, with a list, those of its categories alone. Off: none of events, so that faults
+   stay visible to a host that never asked for a log. */
 void set_logging(Instance *instance, bool on, size_t count, const char *const *categories);
 
 /* The nearest whole number that fits into 32 bits; 0 for what is no number. */
@@ -84,6 +86,8 @@ const Variable *find(Instance *instance, const char *function, uint32_t referenc
 Status before_set(Instance *instance, const char *function, const Variable *variable);
 Status before_get(Instance *instance, const char *function, const Variable *variable);
 Status set_text(Instance *instance, const Variable *variable, const char *text);
+/* Puts a Real at its `place` among the numbers. */
+Status set_real(Instance *instance, const Variable *variable, double *place, double value);
 
 /* Saved states. A handle that is none of this instance's is told, never followed. */
 Status state_get(Instance *instance, const char *function, void **handle);

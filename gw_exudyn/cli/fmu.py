@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import click
@@ -28,8 +29,8 @@ def command() -> None:
 @options.overrides
 @click.option("--out", "-o", metavar="FILE.fmu", help="The file. Without: NAME.fmu in the current folder.")
 @click.option("--fmi", type=click.Choice(["2", "3"]), default="2", show_default=True, help="Version of the standard.")
-@click.option("--stations", type=click.IntRange(2, 5000), default=51, show_default=True,
-              help="Points along the wire at which FMI 3 shows its shape.")  # fmt: skip
+@click.option("--stations", type=click.IntRange(2, 5000),
+              help="Points along the wire at which FMI 3 shows its shape. Without: 51.")  # fmt: skip
 @click.option("--bundled", is_flag=True, help="Put the worker with its own Python inside, for this platform alone.")
 @click.option("--ssp", is_flag=True, help="Write a parameter set (SSV) and an example system (SSP) beside the FMU.")
 @click.option("--python", metavar="PATH", help="Interpreter to record in the FMU. Without: this one.")
@@ -38,25 +39,29 @@ def export(
     overrides: tuple[str, ...],
     out: str | None,
     fmi: str,
-    stations: int,
+    stations: int | None,
     bundled: bool,
     ssp: bool,
     python: str | None,
 ) -> None:
     """Load, check and write."""
     from gw_exudyn.fmi import export as exporting
-    from gw_exudyn.fmi.table import variables_of
+    from gw_exudyn.fmi.ssp import files_beside, write_ssp
+    from gw_exudyn.fmi.table import DEFAULT_STATIONS, variables_of
     from gw_exudyn.scenario import load_scenario
 
+    if stations is not None and fmi == "2":
+        raise UsageError("--stations: FMI 2.0 has no arrays to show the wire's shape in; add --fmi 3, or leave it out")
+    points = stations or DEFAULT_STATIONS
     loaded = load_scenario(scenario, overrides)
     file = out or f"{loaded.name}.fmu"
+    if ssp:
+        files_beside(Path(file))  # before anything is written
     launch = exporting.launch_of(python)
-    written = exporting.export(loaded, file, int(fmi), stations=stations, launch=launch, bundled=bundled)
+    written = exporting.export(loaded, file, int(fmi), stations=points, launch=launch, bundled=bundled)
     put(str(written))
     if ssp:
-        from gw_exudyn.fmi.ssp import write_ssp
-
-        for further in write_ssp(loaded, written, variables_of(loaded, int(fmi), stations)):
+        for further in write_ssp(loaded, written, variables_of(loaded, int(fmi), points)):
             put(str(further))
     if bundled:
         from gw_exudyn.fmi.bundle import this_platform
@@ -70,7 +75,9 @@ def export(
 @click.option("--input", "inputs", metavar="FILE.csv", help="Inputs against time: header time,command.speed [mm/s].")
 @click.option("--stop", type=float, help="Stop time, s. Without: the FMU's own.")
 @click.option("--step", type=float, help="Communication step, s. Without: the FMU's own.")
-@click.option("--out", metavar="DIR", help="Folder for outputs.csv and run.json.")
+@click.option(
+    "--out", metavar="DIR", help="Folder for outputs.csv, stations.csv (FMI 3.0: the wire's shape) and run.json."
+)
 @options.as_json
 def run(
     file: str,
@@ -86,8 +93,8 @@ def run(
     from gw_exudyn.fmi.session import FmuSession
 
     chosen = dict(_pair(text) for text in values)
-    table = read_inputs(inputs) if inputs else None
     with FmuSession(file) as session:
+        table = read_inputs(inputs, session.units) if inputs else None
         done = session.run(chosen, inputs=table, stop=stop, step=step)
         final: dict[str, Any] = {n: value.item() for n, value in done.final.items() if value.ndim == 0}
         if out is not None:

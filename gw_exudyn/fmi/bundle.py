@@ -65,7 +65,7 @@ def frozen() -> dict[str, bytes]:
     """
     this_platform()
     if find_spec("PyInstaller") is None:
-        raise UsageError("--bundled needs the package PyInstaller; install it with: pip install 'gw-exudyn[bundle]'")
+        raise UsageError("--bundled needs PyInstaller; install it with `pip install '.[bundle]'` in the checkout")
     with tempfile.TemporaryDirectory(prefix="gw-bundle-") as scratch:
         entry = Path(scratch, f"{FOLDER}.py")
         entry.write_text(_ENTRY, encoding="utf-8")

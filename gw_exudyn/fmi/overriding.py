@@ -7,12 +7,14 @@ out. `opened` takes out what would stand against a value that is to be changed.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from typing import Any
 
 from gw_exudyn.errors import Problem, ScenarioError, UsageError
 from gw_exudyn.fmi import variables as names
 from gw_exudyn.fmi.parameters import command_of, constant_drive, path_of
 from gw_exudyn.scenario import Scenario, scenario_from_dict
+from gw_exudyn.scenario.overrides import OVERRIDE
 
 _OF_THE_WIRE = ("diameter", "length", "density", "bending_stiffness")
 """What a wire of the catalogue fills in, where a file does not give it."""
@@ -22,8 +24,55 @@ def overridden(base: Scenario, changed: Mapping[str, Any]) -> Scenario:
     """A scenario with other values of an FMU's parameters, by their names. Raises ScenarioError."""
     plain = {path_of(name): value for name, value in changed.items() if not name.endswith(".factor")}
     factors = {name: value for name, value in changed.items() if name.endswith(".factor")}
-    scenario = scenario_from_dict(opened(base, plain), plain)
-    return _scaled(scenario, factors) if factors else scenario
+    wrong = [*_not_of_the_drive(base, changed), *_out_of_range(factors)]
+    for problem in wrong:
+        plain.pop(problem.path, None)
+    try:
+        scenario = scenario_from_dict(opened(base, plain), plain)
+        scenario = _scaled(scenario, factors) if factors and not wrong else scenario
+    except ScenarioError as error:
+        named = {path_of(name): name for name in changed}
+        raise ScenarioError([*(_by_name(problem, named) for problem in error.problems), *wrong]) from error
+    if wrong:
+        raise ScenarioError(wrong)
+    return scenario
+
+
+def _by_name(problem: Problem, named: Mapping[str, str]) -> Problem:
+    """As the host knows it: by the parameter's name, not by its path and as an override."""
+    place = None if (problem.file or "").startswith(OVERRIDE) else problem.file
+    return replace(problem, path=named.get(problem.path, problem.path), file=place)
+
+
+OWN_FMU = "leave it at its start, or export the scenario that is to run as an FMU of its own"
+"""What to do where a host has named another scenario, which lacks what the exported one has."""
+
+
+def _not_of_the_drive(scenario: Scenario, changed: Mapping[str, Any]) -> list[Problem]:
+    """Parameters that the exported scenario's drive has and this one's has not."""
+    drive, command = scenario.drive, command_of(scenario)
+    of_one_value = {command, "distance"} if drive.kind == "speed" else {command}
+    wrong = []
+    for name in changed:
+        part, _, field = name.partition(".")
+        if part != "drive":
+            continue
+        if field in of_one_value:
+            if constant_drive(scenario) is None:
+                text = f"the drive has no one {command}, but a table of it in time; {OWN_FMU}"
+                wrong.append(Problem(name, text))
+        elif field in ("speed", "force", "distance") or not hasattr(drive, field):
+            wrong.append(Problem(name, f"a drive of kind {drive.kind} has none; {OWN_FMU}"))
+    return wrong
+
+
+def _out_of_range(factors: Mapping[str, Any]) -> list[Problem]:
+    low, high = names.STIFFNESS_FACTOR_LIMITS
+    return [
+        Problem(name, f"{value:g} is out of range; allowed: {low:g} to {high:g}")
+        for name, value in factors.items()
+        if not low <= value <= high
+    ]
 
 
 def opened(base: Scenario, paths: Collection[str]) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from gw_exudyn.fmi import variables as v
 from gw_exudyn.fmi.prose import ENDING_HEADINGS, ENDINGS, LIMITS, METHOD
 from gw_exudyn.fmi.related import SET_FROM_PAGE
-from gw_exudyn.fmi.resources import Launch
+from gw_exudyn.fmi.resources import Launch, how_to_install
 from gw_exudyn.fmi.units import fmi_name
 from gw_exudyn.fmi.variables import Variable
 
@@ -122,7 +122,7 @@ def external_dependencies(launch: Launch) -> str:
     if launch.program:
         return f"Linux with glibc {launch.glibc} or newer. Everything else is in resources/.\n"
     return (
-        f"Python 3.11 or newer with the package gw-exudyn {launch.version}: pip install gw-exudyn=={launch.version}\n"
+        f"Python 3.11 or newer with the package gw-exudyn {launch.version}; {how_to_install(launch.version)}\n"
         f"{_where(launch)}\n"
     )
 

@@ -22,11 +22,13 @@ from gw_exudyn.fmi.variables import (
     REAL,
     SCENARIO_FILE,
     STIFFNESS_FACTOR,
+    STIFFNESS_FACTOR_LIMITS,
     TEXT,
     TIMEOUT,
     TUNABLE,
     Variable,
 )
+from gw_exudyn.quantities import QUANTITIES
 from gw_exudyn.scenario import kinds
 from gw_exudyn.scenario.fields import Choice, Kind, Number, OrNone, Quantity, Row, Whole
 from gw_exudyn.scenario.section import Section
@@ -41,6 +43,9 @@ _INNER = ("stiffness_factor", "tip_shape", "target")
 
 _PATHS = {"tip.dead_force": "tip.force"}
 """Path of what has another name here, since an output has its own."""
+
+_SHOWN_IN = {QUANTITIES["push_force"].unit: QUANTITIES["push_force"].display_unit}
+"""Forces all in one unit, parameters as outputs."""
 
 _NAMES = {path: name for name, path in _PATHS.items()}
 
@@ -96,10 +101,11 @@ def _parameters(model: Model) -> Iterator[Variable]:
     known = {**model.describe(), "catheter.friction_coefficient": scenario.contact.friction_coefficient}
     yield Variable("wire.model", TEXT, FIXED, "wire of the catalogue, by name", scenario.wire.model or "", source="-")
     factor = "factor on the wire's bending stiffness"
-    yield Variable(STIFFNESS_FACTOR, REAL, FIXED, factor, 1.0, "1", "1", 1e-3, 1e3)
+    rest = (1.0, "1", "1", *STIFFNESS_FACTOR_LIMITS)
+    yield Variable(STIFFNESS_FACTOR, REAL, FIXED, factor, *rest)
     for i in range(len(scenario.wire.bending_stiffness)):
         name = f"wire.bending_stiffness[{i}].factor"
-        yield Variable(name, REAL, FIXED, f"{factor}, of piece {i} from the tip", 1.0, "1", "1", 1e-3, 1e3)
+        yield Variable(name, REAL, FIXED, f"{factor}, of piece {i} from the tip", *rest)
     for part in _SECTIONS:
         section = getattr(scenario, part)
         if section is not None:
@@ -129,13 +135,23 @@ def _parameter(name: str, kind: Kind, value: Any, text: str) -> Iterator[Variabl
         for i, (item, of_item) in enumerate(zip(kind.names, kind.kinds, strict=True)):
             yield from _parameter(f"{name}[{i}]", of_item, value[i], f"{text}: {item}")
     elif isinstance(kind, Quantity) and kind.low <= value <= kind.high:  # not what a word stands for, as off
-        yield Variable(name, REAL, FIXED, text, float(value), kind.unit, kind.usual, kind.low, kind.high, source=path)
+        text, shown = _without_words(text, kind), _SHOWN_IN.get(kind.unit, kind.usual)
+        yield Variable(name, REAL, FIXED, text, float(value), kind.unit, shown, kind.low, kind.high, source=path)
     elif isinstance(kind, Number):
         yield Variable(name, REAL, FIXED, text, float(value), "1", "1", kind.low, kind.high, source=path)
     elif isinstance(kind, Whole):
         yield Variable(name, INTEGER, FIXED, text, int(value), low=kind.low, high=kind.high, source=path)
     elif isinstance(kind, Choice) and len(kind.words) > 1:
         yield Variable(name, TEXT, FIXED, f"{text}; one of {', '.join(kind.words)}", str(value), source=path)
+
+
+def _without_words(text: str, kind: Quantity) -> str:
+    """A meaning without what it says of words, such as auto, and of leaving the key out: a Real takes numbers alone."""
+    words = ("auto", "off", "may be left out", *filter(None, [kind.zero]))
+    return "; ".join(part for part in text.split("; ") if not part.startswith(words))
+
+
+_TRAVEL = "travel in the direction of the speed; it does not end a run inside a host: beyond it the last speed is kept"
 
 
 def constant_drive(scenario: Scenario) -> float | None:
@@ -155,7 +171,7 @@ def _drive(scenario: Scenario) -> Iterator[Variable]:
         yield from _parameter(f"drive.{command_of(scenario)}", kind, value, text)
     if value is not None and drive.kind == "speed":
         way = abs(value) * drive.duration
-        yield from _parameter("drive.distance", kinds.TRAVEL, way, "travel in the direction of the speed")
+        yield from _parameter("drive.distance", kinds.TRAVEL, way, _TRAVEL)
     for field, kind, text in (
         ("hub_mass", kinds.HUB_MASS, "mass of the hub"),
         ("hub_damping", kinds.HUB_DAMPING, "damping of the hub"),

@@ -11,7 +11,8 @@ from typing import Any
 from gw_exudyn.errors import UsageError
 from gw_exudyn.fmi import variables as names
 from gw_exudyn.fmi.channel import DONE, FAILED, STOPPED
-from gw_exudyn.fmi.overriding import overridden
+from gw_exudyn.fmi.overriding import OWN_FMU, overridden
+from gw_exudyn.fmi.parameters import command_of
 from gw_exudyn.fmi.reading import readers
 from gw_exudyn.fmi.resources import read_scenario, read_table
 from gw_exudyn.fmi.variables import TEXT, status_code
@@ -82,6 +83,8 @@ class ScenarioPlant:
         value, simulation = array("d", numbers)[self._command_at], self.simulation
         self._commanded = self._commanded or value != self._numbers[self._command_at].start
         given = {self._command: value} if self._commanded else {}
+        if given:
+            self._check_command()
         target = round(target, 12)
         step = simulation.scenario.solver.step
         while simulation.time < target - 1e-9 and not simulation.ended:
@@ -91,6 +94,15 @@ class ScenarioPlant:
         if not simulation.ended:
             return DONE
         return FAILED if simulation.failed else STOPPED
+
+    def _check_command(self) -> None:
+        """Raises UsageError where another scenario runs than the exported one, whose drive takes something else."""
+        drive, takes = self.simulation.scenario.drive, command_of(self.simulation.scenario)
+        if takes != self._command:
+            raise UsageError(
+                f"command.{self._command}: a drive of kind {drive.kind} takes a {takes} from outside, for which this "
+                f"FMU has no input; {OWN_FMU}"
+            )
 
     def outputs(self) -> tuple[bytes, Sequence[str]]:
         """The outputs at the time reached, in the table's order."""

@@ -40,9 +40,14 @@ class Launch:
         if self.program:
             return "export the FMU on a machine like this one, or without --bundled"
         return (
-            f"install it with: pip install gw-exudyn=={self.version}, and let the environment variable "
-            "GW_EXUDYN_PYTHON name the Python that has it"
+            f"{how_to_install(self.version)}, and let the environment variable GW_EXUDYN_PYTHON name the Python that "
+            "has it"
         )
+
+
+def how_to_install(version: str) -> str:
+    """How a Python comes to have the package in this version: it is in no registry."""
+    return f"install it with `pip install .` in a checkout of gw-exudyn {version}"
 
 
 def table_text(variables: Sequence[Variable], token: str, launch: Launch) -> str:

@@ -20,6 +20,7 @@ from gw_exudyn.fmi.variables import STATUS_CODE, STATUS_MESSAGE
 from gw_exudyn.result import Status
 
 _TAKES_TEXT = ("String",)
+_WHOLE = ("Integer", "Int32")
 
 
 @dataclass(frozen=True)
@@ -122,6 +123,11 @@ class FmuSession:
         """The folder of the FMU's resources."""
         return self._folder / "resources"
 
+    @property
+    def units(self) -> dict[str, str]:
+        """Unit of every variable by its name, as FMI writes it; empty for none."""
+        return {name: str(variable.unit or "") for name, variable in self.variables.items()}
+
     def run(
         self,
         values: Mapping[str, Any] | None = None,
@@ -184,11 +190,11 @@ class FmuSession:
         variable = self._known(name, ("parameter", "input"))
         if variable.type in _TAKES_TEXT or not isinstance(value, str):
             return value
-        readers: dict[str, Callable[[str], Any]] = {"Boolean": _boolean, "Integer": int, "Int32": int}
+        readers: dict[str, Callable[[str], Any]] = {"Boolean": _boolean, **dict.fromkeys(_WHOLE, int)}
         try:
             return readers.get(variable.type, float)(value)
         except ValueError:
-            raise UsageError(f"{name}: {value!r} is no {variable.type}; write a number in {_unit(variable)}") from None
+            raise UsageError(f"{name}: {value!r} is no {variable.type}; write {_wanted(variable)}") from None
 
     def _log(self) -> Any:
         def note(*arguments: Any) -> None:
@@ -225,5 +231,10 @@ def _boolean(text: str) -> bool:
     return words[text.lower()]
 
 
-def _unit(variable: Any) -> str:
-    return str(variable.unit or "no unit")
+def _wanted(variable: Any) -> str:
+    """What a variable takes, in words."""
+    if variable.type == "Boolean":
+        return "true or false"
+    if variable.type in _WHOLE:
+        return "a whole number"
+    return "a number" if variable.unit in (None, "", "1") else f"a number in {variable.unit}"

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from gw_exudyn.errors import StorageError
+from gw_exudyn.errors import StorageError, UsageError
 from gw_exudyn.fmi import variables as v
 from gw_exudyn.fmi.variables import Variable
 
@@ -24,9 +24,21 @@ _TYPES = {v.REAL: "Real", v.INTEGER: "Integer", v.BOOLEAN: "Boolean", v.TEXT: "S
 _COMPONENT = "insertion"
 
 
+def files_beside(fmu: Path) -> tuple[Path, Path]:
+    """The SSV and the SSP that belong to an FMU. Raises UsageError for an FMU that one of them would overwrite."""
+    # Some file systems take X.SSP and X.ssp for one file.
+    if fmu.suffix.lower() in (".ssv", ".ssp"):
+        raise UsageError(
+            f"{fmu}: the {fmu.suffix[1:].upper()} beside the FMU would overwrite it; "
+            f"name the FMU otherwise: {fmu.with_suffix('.fmu')}"
+        )
+    return fmu.with_suffix(".ssv"), fmu.with_suffix(".ssp")
+
+
 def write_ssp(scenario: Scenario, fmu: Path, variables: Sequence[Variable]) -> tuple[Path, Path]:
-    """Write the SSV and the SSP of an FMU beside it and return their files. Raises StorageError."""
-    values, system = fmu.with_suffix(".ssv"), fmu.with_suffix(".ssp")
+    """Write the SSV and the SSP of an FMU beside it and return their files. Raises StorageError, and UsageError as
+    `files_beside` does."""
+    values, system = files_beside(fmu)
     parameters = parameter_set(scenario.name, variables)
     try:
         values.write_bytes(parameters)

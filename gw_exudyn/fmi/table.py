@@ -79,8 +79,8 @@ def _peaks() -> Iterator[Variable]:
         known = QUANTITIES["push_force" if peak == "pull_force" else peak]
         what = "pull force (negative push force)" if peak == "pull_force" else known.long_name
         (name, when), unit = peak_names(peak), (known.unit, known.display_unit)
-        yield Variable(name, REAL, OUTPUT, f"largest {what} over all solver steps so far; 0 for none", None, *unit)
-        yield Variable(when, REAL, OUTPUT, f"time of the largest {what}", None, "s")
+        yield Variable(name, REAL, OUTPUT, f"maximum over all solver steps so far, 0 for none, of: {what}", None, *unit)
+        yield Variable(when, REAL, OUTPUT, f"time of the maximum of: {what}", None, "s")
 
 
 def _status() -> Iterator[Variable]:

@@ -49,6 +49,8 @@ COMMAND_SPEED, COMMAND_FORCE, COMMAND_ACTIVE, SCENARIO_FILE, TIMEOUT = (
 )
 STATUS_CODE, STATUS_MESSAGE = "status.code", "status.message"
 STIFFNESS_FACTOR = "wire.bending_stiffness.factor"
+STIFFNESS_FACTOR_LIMITS = (1e-3, 1e3)
+"""Of it, and of the factor of each piece."""
 
 _OUTPUTS: Mapping[str, str] = MappingProxyType(
     {

@@ -67,10 +67,9 @@ def serve(channel: Channel, make: Callable[[], Plant]) -> None:
         except MemoryError:
             _refuse(channel, "there is not enough memory; use fewer segments (wire.segments)")
         except ImportError as error:
-            _refuse(
-                channel,
-                f"{error}; install gw-exudyn with all that it needs: pip install gw-exudyn=={gw_exudyn.__version__}",
-            )
+            from gw_exudyn.fmi.resources import how_to_install
+
+            _refuse(channel, f"{error}; gw-exudyn lacks what it needs, {how_to_install(gw_exudyn.__version__)}")
         except Exception as error:
             import traceback
 

@@ -51,7 +51,7 @@ class Host:
         assert old in text
         self.table.write_text(text.replace(old, new))
 
-    def instantiate(self) -> Host:
+    def instantiate(self, logging: bool = True) -> Host:
         def log(*arguments: Any) -> None:
             status, category, message = arguments[-3:]
             texts = [x.decode() if isinstance(x, bytes) else x for x in (category, message)]
@@ -61,7 +61,7 @@ class Host:
             str(self.folder),
             self.description,
             "CoSimulation",
-            debug_logging=True,
+            debug_logging=logging,
             logger=log,
             early_return_allowed=self.early_return,
         )

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import re
 import struct
 import zipfile
 
 import pytest
 from fmpy import read_model_description
 from fmpy.validation import validate_fmu
+from hosts import OK, Host
 
 from gw_exudyn.errors import ScenarioError, StorageError, UsageError
 from gw_exudyn.fmi.export import export, identifier_of
 from gw_exudyn.fmi.table import variables_of
 from gw_exudyn.fmi.units import fmi_name
-from gw_exudyn.fmi.variables import output_name
+from gw_exudyn.fmi.variables import REAL, output_name
 from gw_exudyn.quantities import QUANTITIES, SCALARS
 from gw_exudyn.scenario import list_shipped, load_scenario
 
@@ -107,6 +109,30 @@ def test_no_name_is_that_of_a_list_and_of_a_value(name):
 def test_what_a_word_stands_for_is_no_start_of_a_parameter():
     names = {variable.name for variable in variables_of(load_scenario("arc90", ["stop.tip_stall=off"]), 2)}
     assert "stop.tip_stall" not in names
+
+
+@pytest.mark.parametrize("name", list_shipped())
+def test_descriptions_offer_nothing_that_a_number_cannot_be(name):
+    variables = variables_of(load_scenario(name, ["stop.push_force=1 N"]), 3)
+    shown = {v.name: v for v in variables}
+    for variable in variables:
+        if variable.kind == REAL:
+            assert not re.search(
+                r"\b(auto|off|sleeve|left out)\b|largest largest|largest deepest", variable.description
+            )
+        if variable.unit == "N":
+            assert variable.display_unit == "mN"
+    assert shown["stop.tip_stall"].description.endswith("while the wire is pushed in by this")
+    assert shown["catheter.bore"].description == "inner diameter"
+
+
+def test_a_distance_is_said_not_to_end_a_run_in_a_host(fmus, scenario):
+    variables = {v.name: v for v in read_model_description(str(fmus[2])).modelVariables}
+    assert "does not end a run" in variables["drive.distance"].description
+    beyond = scenario.drive.duration + 0.2
+    with Host(fmus[2]).start() as host:
+        assert host.step(beyond)["status"] == OK
+        assert host.get("insertion.depth") == pytest.approx(0.02 * beyond)
 
 
 def test_capabilities_are_declared_in_both_versions(fmu):

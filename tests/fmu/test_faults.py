@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import subprocess
@@ -15,6 +16,11 @@ import pytest
 from fmpy.fmi1 import FMICallException
 from hosts import DISCARD, ERROR, FATAL, OK, WARNING, Host, alive, children
 
+from gw_exudyn import __version__
+from gw_exudyn.errors import ScenarioError
+from gw_exudyn.fmi.overriding import overridden
+
+REMEDY = f"install it with `pip install .` in a checkout of gw-exudyn {__version__}, and let"
 linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks into /proc")
 
 
@@ -64,6 +70,27 @@ def test_a_parameter_out_of_range_is_told_with_what_is_allowed(fmu):
         assert host.step(0.05)["status"] == OK
 
 
+@pytest.mark.parametrize(
+    "name", ["wire.bending_stiffness.factor", "wire.bending_stiffness[1].factor"], ids=["whole wire", "piece"]
+)
+@pytest.mark.parametrize("factor", [0.0, -1.0, 5000.0, math.nan])
+def test_a_stiffness_factor_out_of_range_is_told_beside_all_else(scenario, name, factor):
+    for others in ({}, {"contact.friction_coefficient": 9.0}):
+        with pytest.raises(ScenarioError) as error:
+            overridden(scenario, {name: factor, **others})
+        assert f"{name}: {factor:g} is out of range; allowed: 0.001 to 1000" in str(error.value)
+        assert [problem.path for problem in error.value.problems] == [*others, name]
+
+
+def test_a_mistake_is_told_once_by_the_parameters_name(scenario):
+    with pytest.raises(ScenarioError) as error:
+        overridden(scenario, {"contact.friction_coefficient": 3.0, "tip.dead_force[0]": 1000.0})
+    told = sorted(str(error.value).splitlines())
+    assert told[0].startswith("contact.friction_coefficient: 3.0 is out of range")
+    assert told[1].startswith("tip.dead_force[0]: ")
+    assert "override" not in str(error.value)
+
+
 def test_a_speed_that_is_no_number_is_an_error(fmus):
     with Host(fmus[2]).start() as host:
         for value in (float("nan"), float("inf")):
@@ -101,7 +128,7 @@ def test_no_python(fmus, monkeypatch):
     with Host(fmus[2]) as host:
         text = failed_start(host)
     assert "'/nowhere/python' can't be started" in text
-    assert "pip install gw-exudyn==" in text
+    assert REMEDY in text
     assert "GW_EXUDYN_PYTHON" in text
 
 
@@ -122,7 +149,7 @@ def test_a_python_without_the_package(fmus, monkeypatch, tmp_path):
     with Host(fmus[2]) as host:
         text = failed_start(host)
     assert "No module named 'gw_exudyn'" in text
-    assert "pip install gw-exudyn==" in text
+    assert REMEDY in text
 
 
 def test_another_version_of_the_package(fmus):

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import pytest
+import yaml
 from hosts import DISCARD, ERROR, OK, Host
 
+from gw_exudyn.errors import ScenarioError
 from gw_exudyn.fmi.export import export
 from gw_exudyn.fmi.overriding import overridden
 from gw_exudyn.scenario import scenario_from_dict
@@ -43,6 +45,40 @@ def test_the_drives_own_numbers_are_parameters():
     changed = overridden(scenario, {"drive.force": 0.03, "drive.hub_damping": 2.0})
     assert set(changed.drive.force) == {0.03}
     assert (changed.drive.hub_damping, changed.drive.hub_mass, changed.drive.duration) == (2.0, 0.01, 5.0)
+
+
+TABLE = {"kind": "speed", "table": [[0.0, 0.01], [1.0, 0.01], [1.0, 0.02], [2.0, 0.02]]}
+
+
+@pytest.mark.parametrize(
+    ("drive", "name", "sentence"),
+    [
+        (TABLE, "drive.speed", "the drive has no one speed, but a table of it in time; leave it at its start"),
+        (TABLE, "drive.distance", "the drive has no one speed, but a table of it in time; leave it at its start"),
+        (FORCE, "drive.speed", "a drive of kind force has none; leave it at its start"),
+        (FORCE, "drive.distance", "a drive of kind force has none; leave it at its start"),
+        (TIP_SPEED, "drive.hub_mass", "a drive of kind tip_speed has none; leave it at its start"),
+    ],
+)
+def test_a_parameter_that_another_scenarios_drive_lacks_is_told_beside_all_else(drive, name, sentence):
+    scenario = scenario_from_dict({**BASE, "drive": drive})
+    with pytest.raises(ScenarioError) as error:
+        overridden(scenario, {name: 0.02, "contact.friction_coefficient": 9.0})
+    first, second = sorted(str(error.value).splitlines())
+    assert first.startswith("contact.friction_coefficient: 9.0 is out of range")
+    assert second.startswith(f"{name}: {sentence}")
+
+
+def test_a_command_that_another_scenarios_drive_does_not_take_is_an_error(tmp_path):
+    other = tmp_path / "other.yaml"
+    other.write_text(yaml.safe_dump(scenario_from_dict({**BASE, "drive": FORCE}).to_dict()))
+    scenario = scenario_from_dict({**BASE, "drive": {"kind": "speed", "speed": 0.02, "distance": 0.07}})
+    with Host(export(scenario, tmp_path / "driven.fmu")).start({"scenarioFile": str(other)}) as host:
+        assert host.step(0.1)["status"] == OK  # by its own drive
+        host.set("command.speed", 0.01)
+        assert host.step(0.1)["status"] == ERROR
+        assert "command.speed: a drive of kind force takes a force from outside" in host.messages[-1][2]
+        assert "export the scenario that is to run as an FMU of its own" in host.messages[-1][2]
 
 
 @pytest.mark.parametrize("fmi", [2, 3])

@@ -80,7 +80,7 @@ def test_a_name_with_signs_of_html_stays_text():
 def test_licence_and_dependencies_lie_where_the_standard_has_them(archive):
     assert "MIT License" in archive.read("documentation/licenses/license.txt").decode()
     needs = archive.read("documentation/externalDependencies.txt").decode()
-    assert f"gw-exudyn=={__version__}" in needs
+    assert f"`pip install .` in a checkout of gw-exudyn {__version__}" in needs
     assert "GW_EXUDYN_PYTHON" in needs
 
 

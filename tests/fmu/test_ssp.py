@@ -48,6 +48,13 @@ def test_they_are_what_the_standard_wants(files):
     assert {parameter.get("name") for parameter in parameters.getroot()[0]} == wanted
 
 
+@pytest.mark.parametrize("name", ["x.ssp", "x.ssv", "x.SSP"])
+def test_a_name_that_would_overwrite_the_fmu_is_refused_before_anything_is_written(tmp_path, capsys, name):
+    assert main(["fmu", "export", "arc90", "--ssp", "--out", str(tmp_path / name)]) == 2
+    assert f"name the FMU otherwise: {tmp_path / 'x.fmu'}" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_libcosim_runs_the_system_and_takes_another_set(files, tmp_path):
     pytest.importorskip("libcosimpy", reason="libcosimpy is not installed")
     from libcosimpy.CosimExecution import CosimExecution

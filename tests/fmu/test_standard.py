@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 import re
 import subprocess
 import zipfile
@@ -95,9 +96,47 @@ def test_messages_keep_their_percent_signs(fmus):
         assert "a%s%n##r1##.yaml" in host.messages[-1][2]
 
 
-def test_events_are_logged_only_when_they_are_asked_for(fmus):
-    with Host(fmus[3]).instantiate() as host:
-        assert ("logEvents", "the worker has started") in [m[1:] for m in host.messages]
+def test_events_are_logged_only_when_they_are_asked_for(fmu):
+    event = ("logEvents", "the worker has started")
+    with Host(fmu).instantiate() as host:
+        assert event in [m[1:] for m in host.messages]
+    with Host(fmu).instantiate(logging=False) as host:
+        assert host.messages == []
+
+
+@pytest.mark.parametrize(
+    ("on", "categories", "logged"),
+    [
+        (True, [], True),
+        (True, ["logStatusError"], True),
+        (True, ["logEvents", "logAll"], True),
+        (True, ["logEvents"], False),
+        (True, ["logStatusFatal", "logStatusWarning", "unheard of"], False),
+        (False, [], True),  # a host that wants no debug messages is told its faults
+        (False, ["logEvents"], True),
+    ],
+)
+def test_only_messages_of_the_chosen_categories_are_logged(fmu, on, categories, logged):
+    with Host(fmu).instantiate() as host:
+        host.calls.setDebugLogging(on, categories)
+        host.messages.clear()
+        with pytest.raises(FMICallException):
+            host.set("tip.x", 0.2)
+        assert [message[1] for message in host.messages] == (["logStatusError"] if logged else [])
+
+
+@pytest.mark.parametrize("value", [-1.0, math.nan])
+def test_a_timeout_that_is_no_time_is_refused_whenever_it_is_set(fmu, value):
+    with Host(fmu) as host:
+        for begin in (host.instantiate, host.start):
+            host.free()
+            begin()
+            with pytest.raises(FMICallException):
+                host.set("worker.timeout", value)
+            assert f"worker.timeout: {value:g} s is no time to wait" in host.messages[-1][2]
+        host.calls.reset()
+        host.start({"worker.timeout": 0.0})
+        assert host.step(0.05)["status"] == OK
 
 
 def test_fmpy_builds_the_wrapper_from_the_fmus_own_source(fmus, tmp_path):

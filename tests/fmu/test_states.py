@@ -6,6 +6,9 @@ import pytest
 from fmpy.fmi1 import FMICallException
 from hosts import OK, Host
 
+from gw_exudyn.scenario import Scenario, scenario_from_dict
+from gw_exudyn.simulation import Simulation
+
 
 def run_on(host):
     rows = []
@@ -30,6 +33,53 @@ def test_a_state_goes_on_exactly_here_and_in_another_process(fmu, at):
             other.restore(state, at)
             assert run_on(other) == straight_on
             assert other.get("contact.friction_coefficient") == 0.3
+
+
+CARINA = [(0, -3), (30, -3), (30, -0.05), (10, -0.05), (10, 0.05), (30, 0.05), (30, 3), (0, 3)]
+"""Corners of a lumen that a thin septum parts at x = 10 mm, mm."""
+
+
+@pytest.fixture(scope="module")
+def forked() -> Scenario:
+    return scenario_from_dict(
+        {
+            "name": "forked",
+            "wire": {"model": "universal-ii", "segments": 20, "length": 0.05},
+            "vessel": {
+                "kind": "polygon",
+                "points": [[x / 1e3, y / 1e3] for x, y in CARINA],
+                "open_edges": [1, 5, 7],
+            },
+            "catheter": {"exit": [0, 0.00015], "bore": 0.0012},
+            "drive": {"kind": "speed", "speed": 0.02, "distance": 0.02},
+        }
+    )
+
+
+def test_a_state_keeps_on_which_side_of_a_carina_the_wire_lies(forked, tmp_path):
+    from gw_exudyn.fmi.export import export
+
+    beside = 0.7
+    simulation = Simulation(forked)
+    simulation.step(beside)
+    state = simulation.get_state()
+    assert simulation._stepper.contact.memory.side.any()
+    after = simulation.step(0.2)["friction_loss"]
+    simulation.set_state(state)
+    simulation._stepper.contact.memory.side[:] = 0
+    assert simulation.step(0.2)["friction_loss"] != after  # so a state without the sides would be found below
+
+    for fmi in (2, 3):
+        file = export(forked, tmp_path / f"forked{fmi}.fmu", fmi, stations=7)
+        with Host(file).start() as host:
+            assert host.step(beside)["status"] == OK
+            assert host.get("tip.x") > 0.0135
+            assert host.get("wall.contacts") > 0
+            saved = host.state()
+            straight_on = run_on(host)
+            with Host(file).start() as other:
+                other.restore(saved, beside)
+                assert run_on(other) == straight_on
 
 
 def test_a_state_keeps_who_drives(fmu):
