@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,7 +26,9 @@ if TYPE_CHECKING:
     scenarios, and a figure of both, `compare-A-B`, beside the first run folder.
 
     B is another run folder, or a CSV file of measured values: a column `time [s]`, and `tip_x [mm]` with `tip_y [mm]`,
-    `push_force [mN]` or other quantities of series.csv, at any rate; an empty cell is a gap.
+    `push_force [mN]` or other quantities of series.csv, at any rate, also at several in one file: each quantity is
+    interpolated between its own values. Empty cells are a gap where these lie further apart than one and a half times
+    their usual spacing.
 
     Exit code 6 where a norm is beyond its --tolerance.""",
 )
@@ -54,6 +57,9 @@ def command(
     other = _other(second, run, align)
     norms = compare(course_of(run), other if isinstance(other, Course) else course_of(other))
     limits = _limits(tolerances, norms)
+    without = [name for name, norm in norms.items() if not math.isfinite(norm.value)]
+    if without:
+        tell(f"no number for {', '.join(without)}: at no time have both a value; see the gaps in the measured file")
     changed = None if isinstance(other, Course) else differences(run.scenario.to_dict(), other.scenario.to_dict())
     files = [] if no_figure else _drawn(run, other, Path(out) if out else folder.absolute().parent)
     for one in (run, other):
@@ -164,4 +170,6 @@ def _put_tables(norms: Mapping[str, Norm], changed: list[Difference] | None, fil
 def _beyond(name: str, norm: Norm, limit: float) -> str:
     from gw_exudyn.quantities import number_text
 
+    if not math.isfinite(norm.value):
+        return f"{name}: at no time have both a value, so nothing can be held against the tolerance"
     return f"{name}: {number_text(name, norm.value, norm.unit)} is beyond {number_text(name, limit, norm.unit)}"

@@ -86,3 +86,15 @@ def test_a_bad_measured_file_is_told_with_its_line(gw, runs):
     assert outcome.code == 3
     assert "bad.csv:3: push_force: 'x' is no number" in outcome.err
     assert gw("compare", *runs, "--align").code == 2
+
+
+def test_a_norm_without_pairs_is_told(gw, runs):
+    """The camera has ended before the run's first output after the start, so that no instant is known of both."""
+    header = "time [s],tip_x [mm],tip_y [mm],push_force [mN]"
+    rows = ("1e-3,0,0,", "2e-3,0,0,", "9,,,1", "10,,,2")
+    Path("short.csv").write_text("\n".join((header, *rows)) + "\n", encoding="utf-8")
+    outcome = gw("compare", runs[0], "short.csv", "--tolerance", "tip_max=1 mm", "--no-figure")
+    assert outcome.code == 6
+    assert "no number for tip_rms, tip_max" in outcome.err
+    assert "tip_max: at no time have both a value" in outcome.err
+    assert "is beyond" not in outcome.err
