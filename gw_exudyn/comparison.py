@@ -119,6 +119,12 @@ def common_time(first: Course, second: Course) -> Floats:
     return within
 
 
+def shared_time(first: Course, second: Course) -> tuple[float, float]:
+    """How long, s, the time of both is, and that of the shorter."""
+    shared = min(first.time[-1], second.time[-1]) - max(first.time[0], second.time[0])
+    return max(float(shared), 0.0), float(min(np.ptp(first.time), np.ptp(second.time)))
+
+
 def at(course: Course, name: str, time: Floats) -> Floats:
     """A quantity at other instants, linear between its known values; NaN in its gaps."""
     values = course.values[name]
@@ -133,7 +139,7 @@ def at(course: Course, name: str, time: Floats) -> Floats:
 
 def drawn_rows(time: Floats, values: Floats) -> NDArray[np.bool_]:
     """(k,) Rows of a line through values, (k,) or (k, 2): the known ones, and those of a gap, where it breaks."""
-    rows = np.isfinite(values).reshape(len(time), -1).all(axis=1)
+    rows = np.asarray(np.isfinite(values.reshape(len(time), -1)).all(axis=1))
     for begin, end in _gaps(time, rows.copy()):
         rows |= (time > begin) & (time < end)
     return rows

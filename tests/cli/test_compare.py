@@ -74,10 +74,28 @@ def test_a_measured_path_and_force(gw, coarse):
     outcome = gw("compare", coarse[0], "camera.csv", "--tolerance", "tip_rms=0.2 mm", "--json")
     content = json.loads(outcome.out)
     assert outcome.code == 0
+    assert content["aligned"] is False
+    assert "common" not in outcome.err
     assert content["scenarios"] is None
     assert {name.rpartition("_")[0] for name in content["norms"]} == {"tip", "tip_nearest", "push_force"}
     assert Path(content["figures"][0]).name == "compare-corner90-universal-camera.png"
-    assert gw("compare", coarse[0], "camera.csv", "--align", "--no-figure").code == 0
+    assert "as they are in the file" in gw("compare", coarse[0], "camera.csv", "--no-figure").out
+    outcome = gw("compare", coarse[0], "camera.csv", "--align", "--no-figure")
+    assert outcome.code == 0
+    assert "turned and shifted onto A's" in outcome.out
+    assert "places are as" not in outcome.out
+    assert json.loads(gw("compare", coarse[0], "camera.csv", "--align", "--no-figure", "--json").out)["aligned"] is True
+
+
+def test_a_clock_of_its_own_is_told(gw, runs):
+    """A camera that was switched on long before the push shares little of the run's time."""
+    end = float(Path(runs[0], "series.csv").read_text(encoding="utf-8").splitlines()[-1].split(",")[0])
+    for part, told in ((0.4, False), (0.9, True)):
+        rows = (f"{end * (part + i / 10)},{i},0" for i in range(11))
+        Path("late.csv").write_text("\n".join(("time [s],tip_x [mm],tip_y [mm]", *rows)) + "\n", encoding="utf-8")
+        outcome = gw("compare", runs[0], "late.csv", "--no-figure")
+        assert outcome.code == 0
+        assert ("Time 0 is the start of the drive" in outcome.err) is told
 
 
 def test_a_bad_measured_file_is_told_with_its_line(gw, runs):
