@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from gw_exudyn.cli import options
+from gw_exudyn.cli.apart import called, names_apart
 from gw_exudyn.cli.console import put, put_json, put_table, tell
 from gw_exudyn.cli.plot import run_folder, short
 from gw_exudyn.errors import ComparisonError, UnitError, UsageError
@@ -66,6 +67,9 @@ def command(
     if without:
         tell(f"no number for {', '.join(without)}: at no time have both a value; see the gaps in the measured file")
     changed = None if isinstance(other, Course) else differences(run.scenario.to_dict(), other.scenario.to_dict())
+    if not isinstance(other, Course):
+        names = names_apart((run, other), (folder, run_folder(second)))
+        run, other = (called(one, name) for one, name in zip((run, other), names, strict=True))
     files = [] if no_figure else _drawn(run, other, Path(out) if out else folder.absolute().parent)
     for one in (run, other):
         if not isinstance(one, Course) and not one.status.status.trusted:

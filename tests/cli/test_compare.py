@@ -30,6 +30,15 @@ def test_what_differs_and_the_figure(gw, runs):
     assert all(file.stat().st_size > 1000 for file in files)
 
 
+def test_comparisons_of_one_scenario_have_figures_of_their_own(gw, solver):
+    for folder in ("coarse", "fine", "finest"):
+        gw("run", "straight", "-q", "--no-figures", "--out", folder)
+    for other in ("fine", "finest"):
+        outcome = gw("compare", "coarse", other)
+        assert "the scenarios are the same" in outcome.out
+    assert {path.name for path in Path().glob("*.png")} == {"compare-coarse-fine.png", "compare-coarse-finest.png"}
+
+
 @pytest.fixture
 def coarse(gw) -> list[str]:
     """Two runs of the true solver that differ in friction."""
