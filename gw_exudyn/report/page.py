@@ -27,7 +27,8 @@ _FIGURES = ("insertion", "forces", "tip_path", "energy", "contact_map")
 def report_page(results: Sequence[Result], *, title: str = "", figures: bool = True, names: Sequence[str] = ()) -> str:
     """The page as HTML text. names : of the runs, their scenarios' if not given; numbered where alike.
 
-    Raises UsageError for no run, or for more than the player can set beside each other."""
+    Raises UsageError for no run, or for more than the player can set beside each other.
+    """
     if not 1 <= len(results) <= MOST_RUNS:
         raise UsageError(f"a report shows 1 to {MOST_RUNS} runs, not {len(results)}; make several reports")
     names = _numbered(names or [result.scenario.name for result in results])
