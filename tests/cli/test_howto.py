@@ -74,7 +74,7 @@ def test_a_study_reads(name, gw):
     Path("study.yaml").write_text(text, encoding="utf-8")
     outcome = gw("sweep", "study.yaml", "--dry-run")
     assert outcome.code == 0, outcome.err
-    assert str(POINTS[name]) in outcome.out + outcome.err
+    assert f"{POINTS[name]} points" in outcome.out + outcome.err
 
 
 def test_a_calibration_reads():

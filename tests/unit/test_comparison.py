@@ -139,3 +139,15 @@ def test_a_result_has_a_course():
 
     result = made_up_result()
     assert compare(course_of(result), course_of(result))["tip_rms"].value == 0
+
+
+def test_the_figure_draws_a_line_through_one_of_two_rates():
+    from synthetic import made_up_result
+
+    from gw_exudyn.plots import plot_comparison
+
+    _, table = two_rates()
+    (axes,) = [a for a in plot_comparison(made_up_result(), table).axes if a.get_ylabel().startswith("push force")]
+    drawn = axes.lines[1].get_ydata()
+    assert len(drawn) == np.isfinite(table.values["push_force"]).sum()
+    assert np.isfinite(drawn).all()
