@@ -1,6 +1,6 @@
 """Speed and accuracy on bend60, and MuJoCo on the same case in the same run.
 
-    python benchmarks/bend60.py            (MuJoCo: pip install "gw-exudyn[peers]")
+    python benchmarks/bend60.py            (MuJoCo: pip install ".[peers]")
     python benchmarks/bend60.py --no-mujoco
 
 The converged answer, tip (9.542, 12.892) mm and push force 0.0207 N at t = 10 s, is that of an independent solver of

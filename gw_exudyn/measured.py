@@ -28,8 +28,8 @@ def read_measured(path: str | Path) -> Course:
     """Read a CSV file of measured values.
 
     The header names quantities with their units, `time [s],tip_x [mm],tip_y [mm],push_force [mN]`; a name without a
-    unit is in SI. Times rise at any rate. An empty cell is a gap. Empty lines and lines that begin with # are left
-    out.
+    unit is in SI. Times rise at any rate. An empty cell is a gap, or another quantity's rate: `gw_exudyn.comparison`
+    has the rule. Empty lines and lines that begin with # are left out.
 
     Raises ScenarioError with everything that is wrong, by file and line; StorageError where the file cannot be read.
     """
@@ -65,7 +65,7 @@ def aligned(measured: Course, run: Course) -> Course:
     if not all(name in course.values for course in (measured, run) for name in PATH):
         raise ComparisonError(f"{measured.name} has no path (tip_x, tip_y) to align")
     time = common_time(measured, run)
-    here = np.column_stack([at(measured, name, time) for name in PATH])
+    here = np.column_stack([measured.values[name] for name in PATH])[np.isin(measured.time, time)]
     there = np.column_stack([at(run, name, time) for name in PATH])
     known = np.isfinite(here).all(axis=1) & np.isfinite(there).all(axis=1)
     if known.sum() < 2:

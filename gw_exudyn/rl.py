@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import gymnasium
@@ -19,7 +19,7 @@ import numpy as np
 from gymnasium.spaces import Box
 from numpy.typing import NDArray
 
-from gw_exudyn.errors import UsageError
+from gw_exudyn.errors import ScenarioError, UsageError
 from gw_exudyn.model.law import estimated_force
 from gw_exudyn.result import Status
 from gw_exudyn.scenario import Scenario, load_scenario, scenario_from_dict
@@ -71,7 +71,8 @@ class GuidewireEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
     Terminated: at the target, or where the run cannot go on (a failure, or one of the scenario's own stops), which
     costs 1. Truncated: at the end of the scenario's time.
 
-    Raises UsageError without a target, ScenarioError for a scenario that cannot start.
+    Raises UsageError without a target, and for a target, numbers or bounds that are none; ScenarioError for a scenario
+    that cannot start, and for random values whose path there is not or that it does not take.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012  # gymnasium declares it so
@@ -87,17 +88,20 @@ class GuidewireEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
     ) -> None:
         self._scenario = scenario if isinstance(scenario, Scenario) else load_scenario(scenario)
         self._target, self._within = _target_of(self._scenario, target, within)
-        self._interval, self._randomise = interval, dict(randomise or {})
+        self._interval, self._randomise = interval, _checked_bounds(self._scenario, randomise or {})
         self._simulation = Simulation(self._scenario)
         self._takes, largest = _driven_by(self._scenario)
         self._limit = largest if limit is None else limit
-        if not (self._interval > 0 and self._limit > 0):
-            raise UsageError(f"interval ({interval!r} s) and limit ({self._limit!r}) must be positive")
+        positive = {"interval": self._interval, "limit": self._limit, "within": self._within}
+        wrong = [f"{name} is {value!r}" for name, value in positive.items() if not (_is_number(value) and value > 0)]
+        if wrong:
+            raise UsageError(f"{', '.join(wrong)}; it must be a positive number, in SI")
         self._length = max(math.dist(self._scenario.catheter.exit, self._target), 1e-3)
         self._force = estimated_force(self._scenario, self._simulation.model.around)
         self.action_space = Box(-1.0, 1.0, (1,), np.float32)
         self.observation_space = Box(-LARGEST, LARGEST, (len(OBSERVED),), np.float32)
         self._action, self._distance = 0.0, self._length
+        self._over = True
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -109,13 +113,17 @@ class GuidewireEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
             self._simulation = Simulation(scenario_from_dict(self._scenario.to_dict(), drawn))
         else:
             self._simulation.reset()
-        self._action = 0.0
+        self._action, self._over = 0.0, False
         outputs = self._simulation.outputs
         self._distance = self._distance_to_target(outputs)
         return self._observation(outputs), {"drawn": drawn}
 
     def step(self, action: NDArray[np.float32]) -> tuple[Observation, float, bool, bool, dict[str, Any]]:
-        """Drive for one interval."""
+        """Drive for one interval. `info`: `status`, a sentence on how the episode goes or has ended; `time`, s;
+        `target_reached`. Raises UsageError where the episode is over, or has not been begun by a reset.
+        """
+        if self._over:
+            raise UsageError("there is no episode to step in: it is over or was not begun; call reset() first")
         simulation = self._simulation
         self._action = float(np.clip(np.asarray(action).ravel()[0], -1.0, 1.0))
         dt = min(self._interval, simulation.duration - simulation.time)
@@ -128,9 +136,18 @@ class GuidewireEnv(gymnasium.Env[Observation, NDArray[np.float32]]):
         reward = (before - self._distance) / self._length - (_FORCE_COST * force + _TIME_COST) * dt
         reward += float(reached) - float(stopped and not reached)
         late = simulation.time >= simulation.duration - 1e-9
-        info = {"status": simulation.status.sentence(), "time": simulation.time, "target_reached": reached}
+        info = {"status": self._status(reached, late), "time": simulation.time, "target_reached": reached}
         terminated = bool(reached or simulation.ended)
+        self._over = terminated or late
         return self._observation(outputs), float(reward), terminated, bool(late and not terminated), info
+
+    def _status(self, reached: bool, late: bool) -> str:
+        """How the episode goes: what went wrong before all, then the target, an event, the end of the time."""
+        simulation = self._simulation
+        report = simulation.finished() if late else simulation.status
+        if report.status.trusted and reached:
+            return f"{Status.TARGET_REACHED.problem}."
+        return "The episode goes on." if report.status is Status.STOPPED else report.sentence()
 
     def _within_reach(self, value: float, dt: float) -> float:
         """The speed that keeps the proximal end in its guide over the next interval; other drives need no help."""
@@ -170,8 +187,41 @@ def _target_of(scenario: Scenario, target: Span | None, within: float | None) ->
         raise UsageError(
             "the environment has no target; give target=(x, y) in metres, or a place as stop.target in the scenario"
         )
+    if not _is_pair(place):
+        raise UsageError(f"target is {place!r}; it must be a place in metres, as target=(0.06, 0.02)")
     near = within if within is not None else (given.within if given is not None else None)
-    return (float(place[0]), float(place[1])), 2e-3 if near is None else float(near)
+    return (float(place[0]), float(place[1])), 2e-3 if near is None else near
+
+
+def _checked_bounds(scenario: Scenario, randomise: Mapping[str, Span]) -> dict[str, Span]:
+    """The bounds by path, each tried at both ends, so that what is wrong shows before the first episode. Raises
+    UsageError for what is no pair of bounds, ScenarioError for paths and values that the scenario does not take.
+    """
+    wrong = [
+        f"randomise: {path} has {bounds!r}; give the least and the largest value, in SI, as (0.1, 0.4)"
+        for path, bounds in randomise.items()
+        if not (_is_pair(bounds) and bounds[0] <= bounds[1])
+    ]
+    if wrong:
+        raise UsageError("\n".join(wrong))
+    plain, problems = scenario.to_dict(), []
+    for path, bounds in randomise.items():
+        for value in map(float, bounds):
+            try:
+                scenario_from_dict(plain, {path: value})
+            except ScenarioError as error:
+                problems += [problem for problem in error.problems if problem not in problems]
+    if problems:
+        raise ScenarioError(problems)
+    return {path: (float(low), float(high)) for path, (low, high) in randomise.items()}
+
+
+def _is_pair(given: object) -> bool:
+    return isinstance(given, Sequence | np.ndarray) and len(given) == 2 and all(map(_is_number, given))
+
+
+def _is_number(given: object) -> bool:
+    return isinstance(given, int | float | np.number) and not isinstance(given, bool) and math.isfinite(given)
 
 
 def _driven_by(scenario: Scenario) -> tuple[str, float]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from gw_exudyn.cli import options
+from gw_exudyn.cli.apart import called, names_apart
 from gw_exudyn.cli.console import put, put_json, put_table, tell
 from gw_exudyn.cli.plot import run_folder, short
 from gw_exudyn.errors import ComparisonError, UnitError, UsageError
@@ -24,8 +26,13 @@ if TYPE_CHECKING:
     help="""Set B against run A (a run folder): norms of the difference at equal times, what differs in their
     scenarios, and a figure of both, `compare-A-B`, beside the first run folder.
 
+    Time 0 is the start of the drive, also in a measured file. Where the clock of a camera or load cell showed another
+    time then, take that from all its times first.
+
     B is another run folder, or a CSV file of measured values: a column `time [s]`, and `tip_x [mm]` with `tip_y [mm]`,
-    `push_force [mN]` or other quantities of series.csv, at any rate; an empty cell is a gap.
+    `push_force [mN]` or other quantities of series.csv, at any rate, also at several in one file: each quantity is
+    interpolated between its own values. Empty cells are a gap where these lie further apart than one and a half times
+    their usual spacing.
 
     Exit code 6 where a norm is beyond its --tolerance.""",
 )
@@ -52,18 +59,26 @@ def command(
     folder = run_folder(first)
     run = read_run(folder)
     other = _other(second, run, align)
-    norms = compare(course_of(run), other if isinstance(other, Course) else course_of(other))
+    courses = course_of(run), other if isinstance(other, Course) else course_of(other)
+    norms = compare(*courses)
+    _tell_overlap(*courses)
     limits = _limits(tolerances, norms)
+    without = [name for name, norm in norms.items() if not math.isfinite(norm.value)]
+    if without:
+        tell(f"no number for {', '.join(without)}: at no time have both a value; see the gaps in the measured file")
     changed = None if isinstance(other, Course) else differences(run.scenario.to_dict(), other.scenario.to_dict())
+    if not isinstance(other, Course):
+        names = names_apart((run, other), (folder, run_folder(second)))
+        run, other = (called(one, name) for one, name in zip((run, other), names, strict=True))
     files = [] if no_figure else _drawn(run, other, Path(out) if out else folder.absolute().parent)
     for one in (run, other):
         if not isinstance(one, Course) and not one.status.status.trusted:
             tell(f"{one.scenario.name}: {one.status.sentence()}")
     beyond = {name: limit for name, limit in limits.items() if not norms[name].value <= limit}
     if as_json:
-        _put_json(norms, limits, changed, files)
+        _put_json(norms, limits, changed, align, files)
     else:
-        _put_tables(norms, changed, files)
+        _put_tables(norms, changed, align, files)
     if beyond:
         raise ComparisonError("\n".join(_beyond(name, norms[name], limit) for name, limit in beyond.items()))
     return 0
@@ -83,6 +98,19 @@ def _other(given: str, run: Result, align: bool) -> Result | Course:
     if align:
         raise UsageError("--align turns a measured path; two runs lie in the same frame and are compared as they are")
     return read_run(run_folder(given))
+
+
+def _tell_overlap(first: Course, second: Course) -> None:
+    """Say so where the two share little time: another clock, more likely than not."""
+    from gw_exudyn.comparison import shared_time
+
+    shared, whole = shared_time(first, second)
+    if shared < whole / 2:
+        spans = (f"{one.name} has {one.time[0]:.4g} to {one.time[-1]:.4g} s" for one in (first, second))
+        tell(
+            f"{' and '.join(spans)}: only {shared:.3g} s are common. Time 0 is the start of the drive; "
+            "where a measured clock showed another time then, take that from all its times"
+        )
 
 
 def _limits(tolerances: tuple[str, ...], norms: Mapping[str, Norm]) -> dict[str, float]:
@@ -125,10 +153,15 @@ def _drawn(first: Result, second: Result | Course, folder: Path) -> list[Path]:
 
 
 def _put_json(
-    norms: Mapping[str, Norm], limits: Mapping[str, float], changed: list[Difference] | None, files: list[Path]
+    norms: Mapping[str, Norm],
+    limits: Mapping[str, float],
+    changed: list[Difference] | None,
+    align: bool,
+    files: list[Path],
 ) -> None:
     put_json(
         {
+            "aligned": align,
             "norms": {
                 name: {
                     "value": norm.value,
@@ -145,13 +178,14 @@ def _put_json(
     )
 
 
-def _put_tables(norms: Mapping[str, Norm], changed: list[Difference] | None, files: list[Path]) -> None:
+def _put_tables(norms: Mapping[str, Norm], changed: list[Difference] | None, align: bool, files: list[Path]) -> None:
     from gw_exudyn.quantities import number_text, value_text
 
     put_table([(name, number_text(name, norm.value, norm.unit), norm.meaning) for name, norm in norms.items()], [1])
     put("")
     if changed is None:
-        put("B is measured: pairs are taken at equal time from the start, places as they are in the file")
+        places = "B's path was turned and shifted onto A's" if align else "places are as they are in the file"
+        put(f"B is measured: pairs are taken at equal time, B's as it is in the file; {places}")
     elif changed:
         rows = ((one.path, value_text(one.first), value_text(one.second)) for one in changed)
         put_table([("differs", "A", "B"), *rows])
@@ -164,4 +198,6 @@ def _put_tables(norms: Mapping[str, Norm], changed: list[Difference] | None, fil
 def _beyond(name: str, norm: Norm, limit: float) -> str:
     from gw_exudyn.quantities import number_text
 
+    if not math.isfinite(norm.value):
+        return f"{name}: at no time have both a value, so nothing can be held against the tolerance"
     return f"{name}: {number_text(name, norm.value, norm.unit)} is beyond {number_text(name, limit, norm.unit)}"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from gw_exudyn.cli.apart import called, names_apart
 from gw_exudyn.cli.console import put, tell
 from gw_exudyn.errors import UsageError
 
@@ -43,14 +44,16 @@ def command(runs: tuple[str, ...], out: str | None, figures: tuple[str, ...]) ->
     names = _wanted(figures, TOGETHER if len(runs) > 1 else FIGURES)
     folders = [run_folder(run) for run in runs]
     results = [read_run(folder) for folder in folders]
-    for result in results:
+    called_so = names_apart(results, folders)
+    for result, name in zip(results, called_so, strict=True):
         if not result.status.status.trusted:
-            tell(f"{result.scenario.name}: {result.status.sentence()}")
+            tell(f"{name}: {result.status.sentence()}")
     if len(results) == 1:
         from gw_exudyn.plots import save_figures
 
         files = save_figures(results[0], Path(out) if out else folders[0] / "figures", names)
     else:
+        results = [called(result, name) for result, name in zip(results, called_so, strict=True)]
         files = _side_by_side(results, Path(out) if out else folders[0].absolute().parent, names)
     for file in files:
         put(str(short(file)))

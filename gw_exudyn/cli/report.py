@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from gw_exudyn.cli.apart import names_apart
 from gw_exudyn.cli.console import put, tell
 from gw_exudyn.cli.plot import run_folder, short
 from gw_exudyn.errors import UsageError
@@ -35,11 +36,12 @@ def command(runs: tuple[str, ...], out: str | None, title: str, no_figures: bool
     if any(_is_sweep(folder) for folder in folders):
         return _of_sweep(folders, Path(out) if out else None, title, not no_figures)
     results = [read_run(folder) for folder in folders]
-    for result in results:
+    names = names_apart(results, folders)
+    for result, name in zip(results, names, strict=True):
         if not result.status.status.trusted:
-            tell(f"{result.scenario.name}: {result.status.sentence()}")
+            tell(f"{name}: {result.status.sentence()}")
     target = Path(out) if out else folders[0] / "report.html"
-    put(str(short(save_report(results, target, title=title, figures=not no_figures))))
+    put(str(short(save_report(results, target, title=title, figures=not no_figures, names=names))))
     return 0
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gw_exudyn.comparison import PATH, Course, common_time, course_of, distance
+from gw_exudyn.comparison import PATH, Course, common_time, course_of, distance, drawn_rows
 from gw_exudyn.plots.scene import draw_vessel, same_vessel, set_view, view
 from gw_exudyn.plots.style import (
     BLACK,
@@ -113,7 +113,8 @@ def _draw_force(axes: Axes, words: str, curves: list[Floats], courses: tuple[Cou
     _, seconds = shown("time", *(course.time for course in courses))
     for number, (course, force) in enumerate(zip(courses, curves, strict=True)):
         colour, line = RESULT_COLOURS[number], LINE_STYLES[number]
-        axes.plot(course.time * seconds, force * factor, color=colour, linestyle=line, linewidth=1.5)
+        rows = drawn_rows(course.time, force)
+        axes.plot(course.time[rows] * seconds, force[rows] * factor, color=colour, linestyle=line, linewidth=1.5)
     axes.axhline(0.0, color=BLACK, linewidth=0.6)
     axes.set_ylabel(axis_label(words, unit))
     axes.margins(x=0.01)

@@ -24,11 +24,14 @@ SCRIPTS = ("base.js", "data.js", "scene.js", "chart.js", "player.js", "run.js")
 _FIGURES = ("insertion", "forces", "tip_path", "energy", "contact_map")
 
 
-def report_page(results: Sequence[Result], *, title: str = "", figures: bool = True) -> str:
-    """The page as HTML text. Raises UsageError for no run, or for more than the player can set beside each other."""
+def report_page(results: Sequence[Result], *, title: str = "", figures: bool = True, names: Sequence[str] = ()) -> str:
+    """The page as HTML text. names : of the runs, their scenarios' if not given; numbered where alike.
+
+    Raises UsageError for no run, or for more than the player can set beside each other.
+    """
     if not 1 <= len(results) <= MOST_RUNS:
         raise UsageError(f"a report shows 1 to {MOST_RUNS} runs, not {len(results)}; make several reports")
-    names = _names(results)
+    names = _numbered(names or [result.scenario.name for result in results])
     runs = [packed_run(result) | {"name": name} for result, name in zip(results, names, strict=True)]
     parts = {
         "STATUS": "".join(_status(result, name) for result, name in zip(results, names, strict=True)),
@@ -41,15 +44,21 @@ def report_page(results: Sequence[Result], *, title: str = "", figures: bool = T
     return filled("run.html", SCRIPTS, title or " and ".join(names), data, parts)
 
 
-def save_report(results: Sequence[Result], path: str | Path, *, title: str = "", figures: bool = True) -> Path:
+def save_report(
+    results: Sequence[Result],
+    path: str | Path,
+    *,
+    title: str = "",
+    figures: bool = True,
+    names: Sequence[str] = (),
+) -> Path:
     """Write the page and return its path. Raises StorageError where the disk refuses."""
-    return save_page(report_page(results, title=title, figures=figures), path)
+    return save_page(report_page(results, title=title, figures=figures, names=names), path)
 
 
-def _names(results: Sequence[Result]) -> list[str]:
+def _numbered(plain: Sequence[str]) -> list[str]:
     """Names of the runs, numbered where two have the same."""
-    plain = [result.scenario.name for result in results]
-    return [f"{name} ({i + 1})" if plain.count(name) > 1 else name for i, name in enumerate(plain)]
+    return [f"{name} ({i + 1})" if list(plain).count(name) > 1 else name for i, name in enumerate(plain)]
 
 
 def _status(result: Result, name: str) -> str:

@@ -27,6 +27,16 @@ def test_a_page_that_cannot_be_written_ends_with_7(gw, solver):
     assert "name another place" in outcome.err
 
 
+def test_two_runs_of_one_scenario_are_called_by_their_folders(gw, solver):
+    for folder in ("coarse", "fine"):
+        gw("run", "straight", "-q", "--no-figures", "--out", folder)
+    gw("report", "coarse", "fine", "-o", "page.html", "--no-figures")
+    page = Path("page.html").read_text(encoding="utf-8")
+    assert "<title>coarse and fine</title>" in page
+    assert "straight (1)" not in page
+    assert "inputs of fine" in page
+
+
 STUDY = """base: straight
 set: {wire.segments: 5, solver.step: 0.5 s, output.interval: 0.5 s, drive.distance: 4 mm}
 vary: {contact.friction_coefficient: [0.1, 0.2]}

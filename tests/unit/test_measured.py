@@ -73,7 +73,7 @@ def path_of(x, y, name="run"):
 
 
 def test_a_turned_and_shifted_path_lies_on_the_run_again():
-    run = path_of([0.0, 0.01, 0.02, 0.025], [0.0, 0.0, 0.005, 0.02])
+    run = path_of([0.0, 0.01, 0.02, 0.025, 0.027, 0.03], [0.0, 0.0, 0.005, 0.02, 0.03, 0.04])
     c, s = np.cos(0.7), np.sin(0.7)
     x, y = run.values["tip_x"], run.values["tip_y"]
     measured = path_of(c * x - s * y + 0.3, s * x + c * y - 0.1, "camera")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gw_exudyn.errors import UsageError
+from gw_exudyn.errors import ScenarioError, UsageError
 from gw_exudyn.scenario import load_scenario
 
 gymnasium = pytest.importorskip("gymnasium", reason="gymnasium is not installed")
@@ -61,7 +61,10 @@ def test_reaching_the_target_ends_the_episode_with_a_bonus():
         observation, reward, terminated, truncated, info = env.step(FULL)
         total, steps = total + reward, steps + 1
         assert not truncated
+        assert info["status"] == ("The tip reached its target." if terminated else "The episode goes on.")
     assert info["target_reached"]
+    with pytest.raises(UsageError, match=r"call reset\(\)"):
+        env.step(FULL)
     # The progress made, one for the target, less 0.01 for each second.
     distance = observation[rl.OBSERVED.index("distance")]
     assert distance <= 1 / 12
@@ -71,9 +74,52 @@ def test_reaching_the_target_ends_the_episode_with_a_bonus():
 def test_time_truncates():
     env = rl.GuidewireEnv(small(), AHEAD)
     env.reset(seed=0)
-    ends = [env.step(np.zeros(1, np.float32))[2:4] for _ in range(20)]
-    assert ends[:-1] == [(False, False)] * 19
-    assert ends[-1] == (False, True)
+    steps = [env.step(np.zeros(1, np.float32)) for _ in range(20)]
+    assert [step[2:4] for step in steps[:-1]] == [(False, False)] * 19
+    assert steps[-1][2:4] == (False, True)
+    assert steps[-1][4]["status"].startswith("The run reached its end")
+    with pytest.raises(UsageError, match=r"call reset\(\)"):
+        env.step(FULL)
+    env.reset()
+    env.step(FULL)
+
+
+def test_a_step_before_the_first_reset_is_wrong_use():
+    with pytest.raises(UsageError, match=r"call reset\(\)"):
+        rl.GuidewireEnv(small(), AHEAD).step(FULL)
+
+
+def test_an_event_that_ends_the_episode_is_told():
+    env = rl.GuidewireEnv(small(stop={"push_force": 1e-6}, tip={"force": [-0.01, 0.0]}), AHEAD)
+    env.reset(seed=0)
+    *_, terminated, _, info = env.step(FULL)
+    assert terminated
+    assert "push force exceeded its limit" in info["status"]
+
+
+@pytest.mark.parametrize("target", [(1,), (0.01, 0.02, 0.03), "ab", ("a", "b"), (float("nan"), 0.0), 0.01])
+def test_a_target_that_is_no_place_is_wrong_use(target):
+    with pytest.raises(UsageError, match="place in metres"):
+        rl.GuidewireEnv(small(), target)
+
+
+@pytest.mark.parametrize("given", [{"interval": 0.0}, {"limit": "fast"}, {"within": -1e-3}])
+def test_a_number_that_is_none_is_wrong_use(given):
+    with pytest.raises(UsageError, match=f"{next(iter(given))} is"):
+        rl.GuidewireEnv(small(), AHEAD, **given)
+
+
+@pytest.mark.parametrize("bounds", [(0.4, 0.1), (0.1,), 0.3, ("0.1", "0.4"), (0.0, float("inf")), None])
+def test_bounds_that_are_none_are_told_at_once(bounds):
+    with pytest.raises(UsageError, match="least and the largest"):
+        rl.GuidewireEnv(small(), AHEAD, randomise={"contact.friction_coefficient": bounds})
+
+
+def test_random_values_that_the_scenario_does_not_take_are_told_at_once():
+    randomise = {"contact.friction_coeff": (0.1, 0.2), "wire.diameter": (-1e-3, 1e-3)}
+    with pytest.raises(ScenarioError) as caught:
+        rl.GuidewireEnv(small(), AHEAD, randomise=randomise)
+    assert {problem.path for problem in caught.value.problems} == set(randomise)
 
 
 def test_a_pull_beyond_the_guide_is_held_back():

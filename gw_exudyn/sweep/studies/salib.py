@@ -14,7 +14,7 @@ def missing_library() -> str | None:
     """What to do where SALib is missing; None where it is there."""
     if find_spec("SALib") is not None:
         return None
-    return "needs the package SALib; pip install 'gw-exudyn[sensitivity]'"
+    return "needs the package SALib; pip install '.[sensitivity]' in the checkout"
 
 
 def salib(module: str) -> Any:
