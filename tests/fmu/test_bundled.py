@@ -124,5 +124,5 @@ def test_a_folder_that_forbids_running_is_told(fmus):
 
 def test_without_the_packager_it_is_told(scenario, tmp_path, monkeypatch):
     monkeypatch.setattr(bundle, "find_spec", lambda name: None)
-    with pytest.raises(UsageError, match=r"pip install 'gw-exudyn\[bundle\]'"):
+    with pytest.raises(UsageError, match=r"pip install '\.\[bundle\]'` in the checkout"):
         export(scenario, tmp_path / "a.fmu", bundled=True)
