@@ -14,7 +14,7 @@ from gw_exudyn.errors import StorageError
 
 
 def filled(template: str, scripts: Sequence[str], title: str, data: Mapping[str, Any], parts: Mapping[str, str]) -> str:
-    """A page from its template: style, scripts, title (plain text), the scripts' data, and parts of HTML by name.
+    """A page from the template of its body: style, scripts, title (plain text), the scripts' data, HTML parts by name.
 
     Raises ValueError for data with numbers that are not finite.
     """
@@ -26,7 +26,7 @@ def filled(template: str, scripts: Sequence[str], title: str, data: Mapping[str,
         "SCRIPT": "\n".join(asset(name) for name in scripts),
         "DATA": _script_safe(json.dumps(data, allow_nan=False)),
     }
-    page = asset(template)
+    page = asset("frame.html").replace("<!--BODY-->\n", asset(template))
     for name, text in given.items():
         page = page.replace(f"<!--{name}-->", text)
     return page

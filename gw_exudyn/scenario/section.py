@@ -20,8 +20,8 @@ from pydantic import (
 )
 from pydantic_core import core_schema
 
-from gw_exudyn.scenario.faults import Faults, Loc, wrong
-from gw_exudyn.scenario.fields import Quantity
+from gw_exudyn.scenario.faults import Faults, Loc, refuse, wrong
+from gw_exudyn.scenario.fields import Choice, Quantity
 from gw_exudyn.scenario.words import did_you_mean, nearest, shown
 
 KIND_TAG = "kind="
@@ -81,6 +81,27 @@ class Form:
             return found if isinstance(found, self.resolved) else found.resolve()
 
         return core_schema.no_info_wrap_validator_function(read, handler.generate_schema(self.form))
+
+
+def kind_tag(value: Any) -> str:
+    """The tag of a value in a union of kinds, by its key or field `kind`."""
+    kind = value.get("kind") if isinstance(value, dict) else getattr(value, "kind", None)
+    return f"{KIND_TAG}{kind}"
+
+
+def check_kind(value: Any, kinds: Choice, what: str) -> None:
+    """Check that a raw value is a mapping of a known kind, first of all: the kind says what the other keys mean.
+    what : its name, for the message. Raises what `wrong` makes, or a ValidationError.
+    """
+    allowed = ", ".join(kinds.words)
+    if not isinstance(value, dict):
+        found = f"is empty; a {what} is needed" if value is None else f"{shown(value)} stands where a {what} is needed"
+        raise wrong(f"{found}: lines of 'key: value', the first kind: {allowed.replace(', ', ' | ')}")
+    if "kind" not in value:
+        refuse(("kind",), wrong(f"is missing: what the {what} is; allowed: {allowed}", missing=True))
+    faults = Faults()
+    faults.read(("kind",), kinds.read, value["kind"])
+    faults.raise_if_any()
 
 
 def to_plain(value: Any) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, NoReturn, Self
 
@@ -19,7 +20,7 @@ from gw_exudyn.scenario.kinds import (
     VESSEL_DIAMETER,
     VESSEL_LENGTH,
 )
-from gw_exudyn.scenario.section import KIND_TAG, Form, Section
+from gw_exudyn.scenario.section import KIND_TAG, Form, Section, check_kind, kind_tag
 from gw_exudyn.scenario.vessels.branches import BranchesVessel
 from gw_exudyn.scenario.vessels.centreline import CentrelineForm
 from gw_exudyn.scenario.vessels.outline import (
@@ -31,7 +32,6 @@ from gw_exudyn.scenario.vessels.outline import (
     counter_clockwise,
 )
 from gw_exudyn.scenario.vessels.regions import Lumen, Region
-from gw_exudyn.scenario.words import shown
 
 VESSEL_KINDS = Choice(("straight", "arc", "branches", "centreline", "polygon", "file", "none"))
 _STEEPEST_FACET = math.radians(45)
@@ -265,11 +265,6 @@ class VesselFile(Section):
         )
 
 
-def _tag(vessel: Any) -> str:
-    kind = vessel.get("kind") if isinstance(vessel, dict) else getattr(vessel, "kind", None)
-    return f"{KIND_TAG}{kind}"
-
-
 VesselForm = Annotated[
     Annotated[StraightVessel, Tag(f"{KIND_TAG}straight")]
     | Annotated[ArcVessel, Tag(f"{KIND_TAG}arc")]
@@ -278,26 +273,17 @@ VesselForm = Annotated[
     | Annotated[VesselFile, Tag(f"{KIND_TAG}file")]
     | Annotated[PolygonForm, Tag(f"{KIND_TAG}polygon")]
     | Annotated[NoVessel, Tag(f"{KIND_TAG}none")],
-    Discriminator(_tag),
+    Discriminator(kind_tag),
 ]
 """What a file may hold."""
 
 
-def _check_kind(vessel: Any) -> None:
-    allowed = ", ".join(VESSEL_KINDS.words)
-    if not isinstance(vessel, dict):
-        found = "is empty; a vessel is needed" if vessel is None else f"{shown(vessel)} stands where a vessel is needed"
-        raise wrong(f"{found}: lines of 'key: value', the first kind: {allowed.replace(', ', ' | ')}")
-    faults = Faults()
-    if "kind" not in vessel:
-        faults.add(("kind",), wrong(f"is missing: what the vessel is; allowed: {allowed}", missing=True))
-    else:
-        faults.read(("kind",), VESSEL_KINDS.read, vessel["kind"])
-    faults.raise_if_any()
-
-
 Vessel = Annotated[
     StraightVessel | ArcVessel | BranchesVessel | PolygonVessel | NoVessel,
-    Form(VesselForm, (StraightVessel, ArcVessel, BranchesVessel, PolygonVessel, NoVessel), check=_check_kind),
+    Form(
+        VesselForm,
+        (StraightVessel, ArcVessel, BranchesVessel, PolygonVessel, NoVessel),
+        check=partial(check_kind, kinds=VESSEL_KINDS, what="vessel"),
+    ),
 ]
 """The vessel as the program sees it, read from any of the forms."""
